@@ -9,7 +9,7 @@ MATURIN := VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quie
 
 RUST := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
 
-.PHONY: help demo test test-rust test-python lint docs bench bench-quick bench-rust bench-orbits bench-everything bench-spart bench-against certificate-campaign contact-campaign capture-campaign fuzz soak test-ros2 test-peers notices clean
+.PHONY: help demo test test-rust test-python lint docs bench bench-quick bench-rust bench-orbits bench-everything bench-spart bench-against certificate-campaign contact-campaign capture-campaign test-campaign fuzz soak test-ros2 test-peers notices clean
 
 help: ## prints this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 16
@@ -87,6 +87,12 @@ bench-spart: $(VENV)/.built $(VENV)/.tested ## compares forward dynamics with SP
 
 certificate-campaign: $(VENV)/.built $(VENV)/.tested ## evaluates the certificates of 10 000 exact and 1000 defective runs; ARGS="--minutes 10"
 	$(BIN)/python tests/certificate_campaign.py $(ARGS)
+
+# CASES= number of cases whose workers are killed
+test-campaign: $(VENV)/.built $(VENV)/.tested ## kills the workers of campaigns of 1000 cases; times 1000 cases, also on Dask
+	CASES=$(or $(CASES),1000) $(BIN)/python -m pytest -s tests/test_campaign_processes.py tests/test_campaign_dask.py \
+		-k killed_workers --timeout 3600
+	$(BIN)/python benches/campaigns.py
 
 contact-campaign: ## checks momentum and energy of random trees through 1000 contacts; CONTACTS= sets their number
 	CONTACTS=$(or $(CONTACTS),1000) cargo test --release -p onorbit-core --test contact_campaign -- --ignored --nocapture

@@ -88,7 +88,7 @@ def test_killed_workers_lose_no_case_and_repeat_none(
     is_over, kills = threading.Event(), []
 
     def kill() -> None:
-        while not is_over.wait(0.1):
+        while not is_over.wait(0.1) and len(kills) < max(2, cases // 40):
             before = len(seen)
             if before >= max(1, cases // 10) + (kills[-1] if kills else 0) and (found := workers()):
                 found[len(kills) % len(found)].kill()
@@ -144,7 +144,7 @@ def test_no_port_is_open_without_a_cluster(monkeypatch: pytest.MonkeyPatch) -> N
 
 def test_a_cluster_that_does_not_answer_is_an_error(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr("onorbit_rs.campaigns.on_dask._CONNECT_S", 1.0)
-    with pytest.raises(CampaignError, match="no Dask scheduler answers at tcp://127.0.0.1:9") as caught:
+    with pytest.raises(CampaignError, match=r"no Dask scheduler answers at tcp://127\.0\.0\.1:9") as caught:
         oo.campaign(spin(), tmp_path, cluster="tcp://127.0.0.1:9")
     assert caught.value.reason == "no cluster"
     assert oo.campaign(spin(), tmp_path).num_rows == 8
@@ -188,7 +188,9 @@ if __name__ == "__main__":
 
 def test_a_worker_with_another_version_is_refused(cluster: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("onorbit_rs.campaigns.plan.software", lambda: "onorbit_rs 0.0.1, avx2")
-    with pytest.raises(CampaignError, match="but the campaign was started with onorbit_rs 0.0.1") as caught:
+    with pytest.raises(
+        CampaignError, match=r"but the campaign was started with onorbit_rs 0\.0\.1"
+    ) as caught:
         oo.campaign(spin(), cluster=cluster)
     assert caught.value.reason == "version"
 

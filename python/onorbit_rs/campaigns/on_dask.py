@@ -27,6 +27,8 @@ _WITHOUT_WORKERS_S = 60.0
 """Wall-clock time for which a campaign waits for the first worker, s."""
 _LOST_S = 15.0
 """Wall-clock time without a connection after which a cluster counts as gone, s."""
+_RESULT_S = 20.0
+"""Wall-clock time for which a result is awaited before the connection is checked, s."""
 _BATCH_S = 1.0
 """Wall-clock time of the cases of one task, s."""
 _AHEAD = 1
@@ -157,7 +159,6 @@ class _Tasks:
             for outcome in self._results(future, cases):
                 count -= 1
                 yield outcome
-            future.release()
 
     def cancel(self) -> None:
         """Cancel the tasks that have not ended."""
@@ -192,7 +193,7 @@ class _Tasks:
         """Return the outcomes of a task; empty if its worker died and its cases run again."""
         module = distributed()
         try:
-            found, seconds = future.result(timeout=30.0)
+            found, seconds = self._result(future)
         except module.KilledWorker as error:
             if self._board.give_back(cases):
                 return []
@@ -209,6 +210,14 @@ class _Tasks:
             ) from error
         self._board.report(seconds)
         return list(found)
+
+    def _result(self, future: Any) -> Any:
+        """Return the result of a task; Dask runs the task again if its worker died before it was fetched."""
+        while True:
+            try:
+                return future.result(timeout=_RESULT_S)
+            except TimeoutError:
+                self._check_connection()
 
     def _gone(self) -> CampaignError:
         return CampaignError(f"the cluster at {self._address} is gone", reason="cluster gone")

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from onorbit_rs.campaigns.document import CampaignDocument
+    from onorbit_rs.campaigns.document import CampaignDocument, Condition
     from onorbit_rs.campaigns.storage import CampaignFolder
     from onorbit_rs.figures import Series
 
@@ -60,7 +60,7 @@ def write_report(
         verdict=_verdict(columns, is_success),
         remarks=[],
         numbers=[_percentiles(found), _sensitivities(ranked, found, len(is_success))],
-        cases=[*_failures(columns, is_success), _worst(shown)],
+        cases=[*_failures(columns, is_success, document.campaign.success), _worst(shown)],
         pictures=list(_pictures(shown, values, ranked, outcomes, is_success)),
         campaign=(folder.path / CAMPAIGN).read_text(encoding="utf-8"),
         again=f"onorbit campaign {CAMPAIGN} --out DIR",
@@ -104,7 +104,9 @@ def _sensitivities(ranked: Sequence[Sensitivity], found: Sequence[Result], cases
     )
 
 
-def _failures(columns: dict[str, list[Any]], is_success: NDArray[np.bool_]) -> Iterator[HtmlTable]:
+def _failures(
+    columns: dict[str, list[Any]], is_success: NDArray[np.bool_], conditions: dict[str, Condition]
+) -> Iterator[HtmlTable]:
     """Yield a table of the cases without success, if there are any."""
     cases = np.flatnonzero(~is_success)
     if len(cases):
@@ -112,20 +114,27 @@ def _failures(columns: dict[str, list[Any]], is_success: NDArray[np.bool_]) -> I
         yield HtmlTable(
             "Cases without success",
             f"onorbit campaign {CAMPAIGN} --case K --out DIR runs one of them with figures.{more}",
-            ["case", "status", "error, or failed checks"],
+            ["case", "status", "reason"],
             [
-                [
-                    str(columns["case"][i]),
-                    columns["status"][i],
-                    columns["error"][i] or _failed_checks(columns, i),
-                ]
+                [str(columns["case"][i]), columns["status"][i], _reason(columns, i, conditions)]
                 for i in cases[:_MOST_CASES]
             ],
         )
 
 
-def _failed_checks(columns: dict[str, list[Any]], index: int) -> str:
-    return str(columns.get("certificate_failures", {index: ""})[index] or "a condition of success")
+def _reason(columns: dict[str, list[Any]], index: int, conditions: dict[str, Condition]) -> str:
+    """Return why a case is no success: its error, the failed checks, or the conditions that do not hold."""
+    if columns["error"][index]:
+        return str(columns["error"][index])
+    reasons = []
+    if not columns["certificate_passed"][index]:
+        reasons.append(f"certificate: {columns['certificate_failures'][index]}")
+    for name, condition in conditions.items():
+        value = columns[name][index] if name in columns else None
+        if not condition.holds(value):
+            shown = f"{value:.6g}" if isinstance(value, float) else "none" if value is None else str(value)
+            reasons.append(f"{name} is {shown}")
+    return ", ".join(reasons)
 
 
 def _worst(shown: Sequence[Result]) -> HtmlTable:
