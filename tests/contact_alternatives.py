@@ -8,7 +8,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import onorbit_rs as oo
-from onorbit_rs.tools.validation import contact, contact_grasp
+from onorbit_rs.tools.validation import contact, contact_grasp, grasp, grasp_worlds
 
 Derivative = Callable[[float, tuple[float, ...]], tuple[float, ...]]
 
@@ -70,6 +70,14 @@ def _lugre(cone: float, v: float, z: float) -> tuple[float, float]:
 
 smooth = drift(_smooth, 1e-5)
 lugre = drift(_lugre, 1e-4)
+
+
+def in_smooth_hand(trace: oo.WorldTrace) -> Any:
+    """Returns the place of a loaded bar in the hand, m, (T, 3), if the friction is smooth: the bar creeps."""
+    cone = 2.0 * grasp_worlds.MU * grasp_worlds.FORCE
+    place = grasp_worlds.in_hand(trace)
+    place[:, 1] += SLOW * math.atanh(grasp.LOAD / cone) * trace["bar"].time
+    return place
 
 
 def with_equal_steps(normal: Any, steps: float = 32.0) -> Any:

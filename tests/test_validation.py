@@ -40,6 +40,8 @@ from onorbit_rs.tools.validation import (
     contact_rigid,
     earth,
     gauss,
+    grasp,
+    grasp_worlds,
     gravity,
     kepler,
     nasa,
@@ -120,6 +122,11 @@ def of_bases_only(first: gauss.Craft, second: gauss.Craft) -> gauss.Impact:
 
 def spin_only(trace: Any) -> Any:
     return trace.momentum[:, 3:]
+
+
+def about_own_centers(trace: Any) -> Any:
+    """Returns the sum of the momenta of the systems, with angular parts about their own centres of mass."""
+    return trace["hand"].momentum + trace["bar"].momentum
 
 
 def beside_each_other(trace: Any, name: str) -> Any:
@@ -223,6 +230,13 @@ CONTROLS: list[tuple[str, str, Any, str, Any]] = [
     ("contact", "rigid boxes fall on a plate", contact_rigid, "LAW", lambda e, mu: oo.HuntCrossley(1e6)),
     ("contact", "a sliding rod, Painlevé's case", contact_rigid, "TANGENT", 2.001),
     ("contact", "a rigid ball bounces to rest", contact_rigid, "HEIGHT", 0.1000001),
+    ("grasp", "jaws close until they touch", grasp, "JOINT_DAMPING", 2.0001),
+    ("grasp", "jaws close to 25 N", grasp, "INTEGRAL", 0.0),
+    ("grasp", "a held bar is pulled out", grasp, "SLIPS", 1.0201),
+    ("grasp", "a held and loaded bar, the arm moves", grasp_worlds, "MU", 0.15),
+    ("grasp", "a held and loaded bar, the arm moves", grasp, "in_hand", contact_alternatives.in_smooth_hand),
+    ("grasp", "three revolute fingers", grasp, "FORCE", 25.0 + 1e-7),
+    ("grasp", "grasp, arm motion, latch, seating and release", grasp, "momentum_of", about_own_centers),
     ("world", "two robots that no event connects, 0.2 s", worlds, "ALONE_STEP", 2e-3),
     ("world", "two robots after a capture and a release", worlds, "RELEASE", 0.501),
     ("world", "three captures connect four robots", worlds, "KEPT", 1),

@@ -29,6 +29,7 @@ TITLES = {
     "joints": "Springs at joints",
     "loops": "Closed loops and mimic joints",
     "contact": "Contact",
+    "grasp": "Grasps",
     "world": "Worlds of several craft",
     "order": "Orders of convergence",
     "engines": "Other engines, if installed",

@@ -98,6 +98,7 @@ __all__ = [
     "Goal",
     "GravityField",
     "GravityGradient",
+    "GripForce",
     "HarrisPriester",
     "Hold",
     "HuntCrossley",
@@ -1009,7 +1010,22 @@ class Goal:
     ) -> Goal: ...
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
 
-_Law = ComputedTorque | JointComputedTorque | JointPid | Compliance | External | _Controller
+@final
+class GripForce:
+    def __new__(
+        cls,
+        force: float,
+        *,
+        closing_rate: ArrayLike,
+        damping: ArrayLike,
+        ramp: float = 0.5,
+        integral: float = 5.0,
+        stiffness: ArrayLike | None = None,
+        effort_limit: ArrayLike | None = None,
+    ) -> GripForce: ...
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
+
+_Law = ComputedTorque | JointComputedTorque | JointPid | Compliance | GripForce | External | _Controller
 
 @final
 class InternalForce:
@@ -1253,6 +1269,7 @@ class Capture:
         within: ArrayLike | None = None,
         slower_than: ArrayLike | None = None,
         held_for: float = 0.0,
+        touching: Sequence[str] | None = None,
         seat: float | None = None,
         pose: ArrayLike | None = None,
     ) -> Capture: ...

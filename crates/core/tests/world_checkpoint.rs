@@ -39,7 +39,8 @@ fn simulation() -> Simulation {
         system("b", 0.02, [0.0, 0.0, -0.01, 0.03, 0.0, 0.0]),
     ]);
     let grip = |system: usize| FrameIndex { system, frame: 1 };
-    let envelope = Envelope { within: [0.2, 1.0], slower_than: [f64::INFINITY; 2], held_for: 0.2 };
+    let envelope =
+        Envelope { within: [0.2, 1.0], slower_than: [f64::INFINITY; 2], held_for: 0.2, touching: Vec::new() };
     simulation.events = vec![
         Event {
             name: "grasp".into(),

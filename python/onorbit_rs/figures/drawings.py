@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from onorbit_rs.common.file_parts import file_part, numbered_part
 from onorbit_rs.common.rotations import has_local_frame
 from onorbit_rs.figures.forces import environment_forces
+from onorbit_rs.figures.grip import grip_force
 from onorbit_rs.figures.ground_track import ground_track
 from onorbit_rs.figures.ledger import ledger
 from onorbit_rs.figures.loop_history import loop_history
@@ -90,6 +91,13 @@ def _of_the_controls(subject: Subject) -> Iterator[Drawing]:
             about = f"Desired minus obtained positions of the joints{whose}"
             name = "joint_errors" if is_alone else f"joint_errors_{file_part(control)}"
             yield Drawing(name, about, partial(control_errors, trace, control, joints, model))
+    for control, force in (subject.grips or {}).items():
+        if control in trace.tracking and np.any(trace.tracking[control]):
+            about = (
+                f"Desired and actual mean normal force of the fingers that the controller {control} closes."
+            )
+            drawing = partial(grip_force, trace, control, force)
+            yield Drawing(f"grip_force_{file_part(control)}", about, drawing)
     if model is None:
         return
     for tool in subject.tools:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from onorbit_rs.scenario.control import JointLaw
+from onorbit_rs.scenario.control import GripForceController, JointLaw
 from onorbit_rs.scenario.control.selection import joint_group, tool_of
 from onorbit_rs.scenario.load import load
 from onorbit_rs.scenario.targets import Target, targets
@@ -41,6 +41,8 @@ class Subject:
         Controlled frames.
     joint_controls : dict
         Names of the joints of each control in joint space, by the name of the control.
+    grips : dict
+        Desired forces of the controls that close a gripper, N, by the name of the control.
     mu : float or None
         Gravitational parameter, m³/s²; None without a planet.
     earth : Earth or None
@@ -57,6 +59,7 @@ class Subject:
     model: Model | None = None
     tools: tuple[Tool, ...] = ()
     joint_controls: dict[str, list[str]] | None = None
+    grips: dict[str, float] | None = None
     mu: float | None = None
     earth: Earth | None = None
     is_the_papers: bool = False
@@ -69,17 +72,19 @@ def subject_of(
 ) -> Subject:
     """Return the subject of the figures from the scenario of a run and the objects built from it."""
     names = [] if model is None else list(model.joint_names)
-    tools, joint_controls = [], {}
+    tools, joint_controls, grips = [], {}, {}
     for control in scenario.laws:
         driven: Any = getattr(control, "joints", None)
         joints = joint_group(driven, names) if driven is not None and names else names
         frame = tool_of(control, scenario.tool)
         if isinstance(control, JointLaw):
             joint_controls[getattr(control, "name", "control")] = joints
+        elif isinstance(control, GripForceController):
+            grips[getattr(control, "name", "control")] = control.force
         elif frame is not None:
             tools.append(Tool(getattr(control, "name", ""), frame, joints))
     return Subject(
-        trace, model, tuple(tools), joint_controls, None if orbit is None else orbit.mu, earth,
+        trace, model, tuple(tools), joint_controls, grips, None if orbit is None else orbit.mu, earth,
         is_the_papers=_is_the_papers(scenario),
         is_carried=scenario.gravity_mode == "carried" or (orbit is not None and orbit.mu is None),
         targets=targets(scenario),

@@ -9,7 +9,12 @@ import numpy as np
 
 from onorbit_rs import _core
 from onorbit_rs.common.coordinates import JOINTS_Q, JOINTS_V
-from onorbit_rs.scenario.control import ExternalController, JointLaw, JointPidController
+from onorbit_rs.scenario.control import (
+    ExternalController,
+    GripForceController,
+    JointLaw,
+    JointPidController,
+)
 from onorbit_rs.scenario.control.selection import joint_columns, joint_group
 
 if TYPE_CHECKING:
@@ -43,21 +48,22 @@ def joint_loads(trace: Trace, built: Built) -> Summary:
 
 
 def efforts_at_limit(trace: Trace, built: Built) -> Summary:
-    """Return the names of the joints under PID control whose effort reached its limit, as a summary entry.
+    """Return the names of the joints under PID or grip control whose effort reached its limit, as an entry.
 
-    The limit is that of the controller or, if the controller has no limit, that of the robot. Without a PID
+    The limit is that of the controller or, if the controller has no limit, that of the robot. Without such a
     controller, there is no entry.
     """
     names, tau = list(built.model.joint_names), np.abs(np.asarray(trace.tau)).max(axis=0)
-    pids = [law for law in built.scenario.laws if isinstance(law, JointPidController)]
+    limited = (JointPidController, GripForceController)
+    laws = [law for law in built.scenario.laws if isinstance(law, limited)]
     reached = set()
-    for law in pids:
+    for law in laws:
         columns = joint_columns(law, names)
         own = [built.model.joints[column].effort for column in columns]
         limits = own if law.effort_limit is None else np.broadcast_to(law.effort_limit, len(columns))
         reached |= {column for column, limit in zip(columns, limits, strict=True)
                     if limit is not None and tau[column] >= limit}  # fmt: skip
-    return {"joint_efforts_at_limit": ", ".join(names[column] for column in sorted(reached))} if pids else {}
+    return {"joint_efforts_at_limit": ", ".join(names[column] for column in sorted(reached))} if laws else {}
 
 
 def largest_fractions(values: Floats, limits: Sequence[float | None]) -> Floats:

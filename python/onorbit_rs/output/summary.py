@@ -21,7 +21,7 @@ from onorbit_rs.output.joints import (
     single_errors,
 )
 from onorbit_rs.robots.fingerprint import fingerprint
-from onorbit_rs.scenario.control import JointLaw
+from onorbit_rs.scenario.control import GripForceController, JointLaw
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Orbit, Trace, WorldTrace
@@ -123,6 +123,8 @@ def _controls(trace: Trace, built: Built) -> Summary:
         key = f"tracking_{control.name}"
         if isinstance(control, JointLaw):
             summary |= joint_errors(key, errors, built, control.joints)
+        elif isinstance(control, GripForceController):
+            summary[f"{key}_force_error_final_n"] = errors[-1, 0]
         else:
             position, attitude = (np.linalg.norm(part, axis=1) for part in np.split(errors, 2, axis=1))
             summary[f"{key}_position_error_max_m"] = position.max()

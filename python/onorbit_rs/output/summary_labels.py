@@ -6,7 +6,7 @@ import re
 from typing import NamedTuple
 
 _ERROR = re.compile(
-    r"tracking_(?:(?P<owner>.+)_)?(?P<what>position|attitude|joint)_error_(?P<which>max|final)_(?P<unit>rad|m)"
+    r"tracking_(?:(?P<owner>.+)_)?(?P<what>position|attitude|joint|force)_error_(?P<which>max|final)_(?P<unit>rad|m|n)"
 )
 _GOAL = re.compile(r"control_(.+)_result")
 _WHICH = {"max": "largest", "final": "at the end"}
@@ -36,7 +36,7 @@ def tracking(key: str) -> Tracking | None:
     owner, what, which, unit = found.group("owner", "what", "which", "unit")
     error = "prismatic joint error" if (what, unit) == ("joint", "m") else f"{what} error"
     prefix = f"{owner}: " if owner else "tool " if what != "joint" else ""
-    return Tracking(owner or "", f"{prefix}{error}, {_WHICH[which]}", unit, which == "max")
+    return Tracking(owner or "", f"{prefix}{error}, {_WHICH[which]}", unit.replace("n", "N"), which == "max")
 
 
 def goal_of(key: str) -> str | None:

@@ -11,6 +11,7 @@ import numpy as np
 
 from onorbit_rs import _core
 from onorbit_rs.exceptions import EffectError
+from onorbit_rs.scenario.control import GripForceController
 from onorbit_rs.scenario.control.load import check_load, needs_load
 from onorbit_rs.scenario.control.selection import joint_group, tool_of
 from onorbit_rs.scenario.engine import build_engine
@@ -207,7 +208,7 @@ def controlled(
     start = Start(model, q, orbit, folder, neighbours=neighbours or {})
     is_alone = neighbours is None
     if scenario.controller is not None:
-        if is_alone and _is_moving(scenario.reference):
+        if is_alone and (_is_moving(scenario.reference) or _grips(scenario.controller)):
             return None, None
         with located(scenario, "controller"):
             law = scenario.controller.build_law(model, tool, folder, runs_code=runs_code)
@@ -239,17 +240,22 @@ def _is_moving(reference: Any) -> bool:
     return moving_frame(getattr(reference, "frame", None)) is not None
 
 
+def _grips(law: Any) -> bool:
+    """Return True if a control law requires the contact forces of a world."""
+    return isinstance(law, GripForceController)
+
+
 def _waiting(scenario: Scenario) -> set[str]:
     """Return the names of the controls that require other systems.
 
     These controls start after an event, track or move a frame of another system, command the force of a
-    capture, or start after such a control.
+    capture, grip by contact forces, or start after such a control.
     """
     controls = scenario.controllers or []
     found = {
         str(part.name)
         for part in controls
-        if _is_moving(part.reference) or needs_load(part, scenario.event_names)
+        if _is_moving(part.reference) or needs_load(part, scenario.event_names) or _grips(part)
     }
     causes = {*scenario.event_names, *found}
     while new := {str(part.name) for part in controls if part.after in causes} - found:

@@ -12,7 +12,7 @@ from onorbit_rs import _core
 from onorbit_rs.common.coordinates import LINEAR, POSITION, QUATERNION
 from onorbit_rs.common.rotations import matrix_from_quaternion
 from onorbit_rs.common.suggestions import did_you_mean, nearest
-from onorbit_rs.exceptions import FrameError, OnOrbitError, SimulationError, WorldError
+from onorbit_rs.exceptions import ControlError, FrameError, OnOrbitError, SimulationError, WorldError
 from onorbit_rs.relative import to_world
 from onorbit_rs.scenario.build import (
     Built,
@@ -24,6 +24,8 @@ from onorbit_rs.scenario.build import (
     check_record_every,
     controlled,
 )
+from onorbit_rs.scenario.control.grip_checks import check_grip
+from onorbit_rs.scenario.control.grip_force import GripForceControl
 from onorbit_rs.scenario.engine import build_world_engine
 from onorbit_rs.scenario.environment.surfaces import build_surfaces
 from onorbit_rs.scenario.events import split_path
@@ -83,6 +85,7 @@ def build_world(scenario: WorldScenario, *, runs_code: bool = True) -> BuiltWorl
             for name, alone in single.items()
         }  # fmt: skip
     _check_frames(scenario, models)
+    _check_grips(scenario, models, systems)
 
     def simulation() -> _core.Simulation:
         others = {name: Neighbour(built.model, built.q, built.v) for name, built in systems.items()}
@@ -90,7 +93,7 @@ def build_world(scenario: WorldScenario, *, runs_code: bool = True) -> BuiltWorl
             _system(scenario, name, built, others, runs_code=runs_code) for name, built in systems.items()
         ]
         contacts = list(_contacts(scenario))
-        with _located_event(scenario), _located_contact(scenario):
+        with _located_event(scenario), _located_contact(scenario), _located_control(scenario):
             world = _core.World(
                 crafts, orbit=around.orbit, earth=around.earth, gravity_mode=scenario.gravity_mode,
                 environment=around.effects, contacts=contacts,
@@ -145,6 +148,15 @@ def _check_frames(scenario: WorldScenario, models: dict[str, _core.Model]) -> No
             system, frame = split_path(path)
             with located(scenario, "events", index, "do", "capture", side):
                 _check_frame(models[system], frame)
+
+
+def _check_grips(scenario: WorldScenario, models: dict[str, _core.Model], systems: dict[str, Built]) -> None:
+    """Raise an error for grippers whose fingers do not oppose each other or open too little."""
+    for name, system in scenario.systems.items():
+        for index, control in enumerate(system.controllers or ()):
+            if isinstance(control, GripForceControl):
+                with located(scenario, "systems", name, "controllers", index):
+                    check_grip(control, name, models, systems[name].q, scenario.contacts)
 
 
 def _check_frame(model: _core.Model, frame: str) -> None:
@@ -211,9 +223,26 @@ def _located_contact(scenario: WorldScenario) -> Iterator[None]:
             raise
 
 
+@contextmanager
+def _located_control(scenario: WorldScenario) -> Iterator[None]:
+    """Locate errors that name a control at this control."""
+    places: dict[str | None, Location] = {
+        control.name: ("systems", name, "controllers", index)
+        for name, system in scenario.systems.items()
+        for index, control in enumerate(system.controllers or ())
+    }
+    try:
+        yield
+    except ControlError as error:
+        if error.name not in places:
+            raise
+        with located(scenario, *places[error.name]):
+            raise
+
+
 def _try_one_step(scenario: WorldScenario, simulation: _core.Simulation) -> None:
     """Run one step, so that errors which would stop the run at once are raised before anything is written."""
-    with located(scenario, "systems"), _located_contact(scenario):
+    with located(scenario, "systems"), _located_contact(scenario), _located_control(scenario):
         try:
             simulation.run(scenario.simulation.time_step)
         except SimulationError as stop:

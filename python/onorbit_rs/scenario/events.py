@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Annotated, Any, ClassVar, Self
 
 from pydantic import BeforeValidator, Field, model_validator
@@ -69,6 +69,8 @@ class Latch(Part):
     """Largest speed as observed in the capturing frame, and largest angular rate. Default: unlimited."""
     held_for: Annotated[Time, NotNegative] = 0.0
     """Time for which the conditions must hold without interruption."""
+    touching: list[str] = Field(default_factory=list)
+    """Names of contacts between both systems that must touch, too. Default: none."""
 
 
 class When(Part):
@@ -164,10 +166,12 @@ class Event(Part):
         return _core.Release(self.name, self.do.release, impulse=self.do.impulse, **values)
 
 
-def check_events(events: list[Event], systems: list[str], brakes: dict[str, list[str]]) -> None:
+def check_events(
+    events: list[Event], systems: list[str], brakes: dict[str, list[str]], contacts: Sequence[str] = ()
+) -> None:
     """Raise an error for unknown or duplicate names, and for events that wait for each other.
 
-    ``brakes`` contains the names of the brakes of each system.
+    ``brakes`` contains the names of the brakes of each system, and ``contacts`` those of the contacts.
     """
     names = [event.name for event in events]
     by_name = dict(zip(names, events, strict=True))
@@ -180,6 +184,7 @@ def check_events(events: list[Event], systems: list[str], brakes: dict[str, list
             raise refuse("when", "after", message=f"no event is named {after!r}{did_you_mean(after, names)}")
         if event.do.capture is not None:
             _check_frames(event.do.capture, systems, refuse)
+            _check_touching(event, contacts, refuse)
             continue
         _check_latch(event, refuse)
         if event.do.release is None:
@@ -242,6 +247,13 @@ def _check_brake(action: Action, brakes: dict[str, list[str]], refuse: Callable[
     problem = check_brake(str(getattr(action, key)), brakes)
     if problem is not None:
         raise refuse("do", key, message=problem)
+
+
+def _check_touching(event: Event, contacts: Sequence[str], refuse: Callable[..., Exception]) -> None:
+    for index, name in enumerate(event.when.latch.touching if event.when.latch else ()):
+        if name not in contacts:
+            hint = did_you_mean(name, contacts) if contacts else "; add it to 'contacts'"
+            raise refuse("when", "latch", "touching", index, message=f"no contact is named {name!r}{hint}")
 
 
 def _check_latch(event: Event, refuse: Callable[..., Exception]) -> None:

@@ -149,7 +149,7 @@ class WorldScenario(Document):
         look_up(self.contacts, self.materials)
         check_names(self)
         brakes = {name: [brake.brake for brake in self.systems[name].actuators] for name in names}
-        check_events(self.events, names, brakes)
+        check_events(self.events, names, brakes, [contact.label for contact in self.contacts])
         check_loops(self.loops, names)
         check_world_engine(self)
         return self

@@ -129,6 +129,9 @@ def _of_tools(rows: TraceRows, setting: Setting) -> Iterator[Series]:
             yield Series("Tool", f"plots/tool_{column.name}", title, column.unit, AXES, rows[column.name])
     for name, errors in rows.tracking.items():
         path = f"plots/tracking/{name}"
+        if name in setting.grips:
+            yield Series("Joints", path, f"{name}: force error", "N", ("force error",), errors)
+            continue
         if errors.shape[1] == 2 * len(AXES):
             for column, part in zip(_TOOL_ERRORS, np.split(errors, 2, axis=1), strict=True):
                 what = column.name.removesuffix("_error")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from onorbit_rs.common.coordinates import BASE_Q
+from onorbit_rs.scenario.control import grip_controls
 from onorbit_rs.scenario.targets import Target, targets
 from onorbit_rs.viewer.font import shown
 from onorbit_rs.viewer.targets import PathFrame, path_frame
@@ -29,7 +30,8 @@ class Setting:
     """The robot, its orbit and its targets.
 
     ``tool`` is the frame whose pose the trace contains; its path is drawn in ``path_frame``. ``system`` is
-    the name of the robot in a world, and ``grasps`` are its frames that capture or are captured.
+    the name of the robot in a world, ``grasps`` are its frames that capture or are captured, and ``grips``
+    are the controls that close a gripper to a force.
     """
 
     model: Model
@@ -41,6 +43,7 @@ class Setting:
     targets: tuple[Target, ...] = ()
     system: str = ""
     grasps: tuple[str, ...] = ()
+    grips: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, built: Built, system: str = "", grasps: tuple[str, ...] = ()) -> Setting:
@@ -56,6 +59,7 @@ class Setting:
             targets(scenario),
             system,
             grasps,
+            grip_controls(scenario.controllers),
         )
 
     def entity(self, part: str) -> str:

@@ -17,6 +17,8 @@ use crate::model::Model;
 /// - gains, goals or references that are invalid or do not fit the group;
 /// - a goal, or a shift of the reference to the present state, of a control without a reference or with an
 ///   external law;
+/// - a shift of the reference, or a tolerance of the path, of a law that grips;
+/// - a force that a gripper cannot exert;
 /// - a load, or internal forces, of a law that does not use them;
 /// - an empty time window;
 /// - a start after a control that does not exist, that never ends or that waits for this control itself;
@@ -63,6 +65,16 @@ fn check_group(control: &Control, model: &Model) -> Result<(), ControlError> {
 fn check_goal(control: &Control) -> Result<(), ControlError> {
     if control.law.external().is_some() && (control.starts_at_present || control.goal.is_some()) {
         return Err(ControlError::GoalOfExternal { control: control.name.clone() });
+    }
+    if control.law.grip().is_some() {
+        let has_path = control.goal.as_ref().is_some_and(|goal| goal.path.is_some());
+        for (option, is_given) in
+            [("starts_at_present", control.starts_at_present), ("path_tolerance", has_path)]
+        {
+            if is_given {
+                return Err(ControlError::GripOption { control: control.name.clone(), option });
+            }
+        }
     }
     let width = control.width();
     if width == 0 && (control.starts_at_present || control.goal.is_some()) {

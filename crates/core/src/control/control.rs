@@ -83,12 +83,13 @@ impl Control {
     /// Returns the number of components of the tracking error: 6 for a frame (m, then rad), one per joint for
     /// a reference of positions or rates, and 0 without a reference or if the reference commands efforts. A
     /// law that follows external commands has one component per joint, which is zero while no positions are
-    /// commanded.
+    /// commanded. A law that grips has one component, the force error, N.
     pub fn width(&self) -> usize {
         match (self.law.task(), self.law.joint_reference()) {
             (Some(_), _) => 6,
             (None, Some(_)) if self.law.interface() != Interface::Effort => self.joints.len(),
             (None, None) if self.law.external().is_some() => self.joints.len(),
+            (None, None) if self.law.grip().is_some() => 1,
             _ => 0,
         }
     }

@@ -1,6 +1,8 @@
 //! Interface of the control laws.
 
 use super::error::ControlError;
+use super::fingers::{Finger, FingerForce};
+use super::grip_memory::GripMemory;
 use super::observation::Observation;
 use super::pseudo_inverse::PseudoInverse;
 use crate::model::Model;
@@ -165,11 +167,15 @@ pub(super) struct EffortInput<'a> {
     pub(super) jacobian: &'a [f64],
     /// Rates of the `k` joints of the group, `(k,)`, rad/s (m/s).
     pub(super) rates: &'a [f64],
+    /// Fingers that the group moves, each with the contact forces on it; empty unless the law grips.
+    pub(super) fingers: (&'a [Finger], &'a [FingerForce]),
 }
 
 /// State and workspace of the laws that command efforts.
 pub(super) struct EffortWork<'a> {
     pub(super) pid: &'a mut PidMemory,
+    /// State of a law that grips; `None` for other laws.
+    pub(super) grip: Option<&'a mut GripMemory>,
     pub(super) inverse: &'a mut PseudoInverse<f64>,
     /// Workspace with one number per joint, `(n,)`.
     pub(super) scratch: &'a mut [f64],

@@ -5,7 +5,11 @@ use super::control::Control;
 use super::control_law::{Interface, PidMemory};
 use super::error::ControlError;
 use super::external::ExternalMemory;
+use super::fingers::{Finger, FingerForce, fingers_of, mean_force};
 use super::goal::{Goal, Outcome};
+use super::grip_force::GripForce;
+use super::grip_memory::GripMemory;
+use crate::model::Model;
 use crate::reference::{Hold, JointPath, JointSample, ReferenceError, TaskReference, TaskSample};
 use crate::spatial::{Mat3, Motion, Vec3};
 use serde::{Deserialize, Serialize};
@@ -42,6 +46,9 @@ pub struct ControlMemory {
     /// State of a law that follows external commands; `None` for other laws.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) external: Option<ExternalMemory>,
+    /// State of a law that grips; `None` for other laws.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) grip: Option<GripMemory>,
 }
 
 /// State of a control, with its desired motion and its error at the time of the last evaluation.
@@ -61,11 +68,15 @@ pub(super) struct ControlState {
     pub(super) tool_in_load: Option<(Mat3<f64>, Vec3<f64>)>,
     /// Tracking error, desired less actual, of length [`Control::width`].
     pub(super) error: Vec<f64>,
+    /// Fingers of a law that grips; empty for other laws.
+    pub(super) fingers: Vec<Finger>,
+    /// Contact forces on the fingers at the last evaluation.
+    pub(super) finger_forces: Vec<FingerForce>,
 }
 
 impl ControlState {
     /// Creates the state of a control before its start; `needs_error` must be true if its law uses the error.
-    pub(super) fn new(control: &Control, needs_error: bool) -> Self {
+    pub(super) fn new(control: &Control, model: &Model, needs_error: bool) -> Self {
         let k = control.joints.len();
         let task = control.law.task();
         let stay = Hold::new(nalgebra::Matrix3::identity(), nalgebra::Vector3::zeros());
@@ -73,6 +84,7 @@ impl ControlState {
             path: Arc::new(stay),
             frame: reference.frame.clone(),
         });
+        let fingers = control.law.grip().map_or_else(Vec::new, |_| fingers_of(&control.joints, model));
         let memory = ControlMemory {
             phase: Phase::Waiting,
             start: 0.0,
@@ -84,6 +96,7 @@ impl ControlState {
             last_tick: None,
             user: Vec::new(),
             external: None,
+            grip: control.law.grip().map(|_| GripMemory::open(k)),
         };
         Self {
             memory,
@@ -97,6 +110,8 @@ impl ControlState {
             pose: (Mat3::identity(), Vec3::zero()),
             tool_in_load: None,
             error: vec![0.0; control.width()],
+            finger_forces: vec![FingerForce::default(); fingers.len()],
+            fingers,
         }
     }
 
@@ -198,6 +213,9 @@ impl ControlState {
                     if is_rate { self.desired.v[place] - rates[j] } else { self.desired.q[place] - q[j] };
             }
         }
+        if let Some(law) = control.law.grip() {
+            self.error[0] = law.force - mean_force(&self.finger_forces);
+        }
         if let Some(law) = control.law.external() {
             self.take_joints(control, q, rates);
             law.sample(t, &mut self.desired);
@@ -249,6 +267,9 @@ impl ControlState {
 
     /// Returns the outcome of the goal at `t`, s, which is `clock` seconds after the start of the control.
     pub(super) fn judge(&self, goal: &Goal, control: &Control, t: f64, clock: f64) -> Outcome {
+        if let Some(law) = control.law.grip() {
+            return self.judge_grip(law, goal, t, clock);
+        }
         if self.frame.is_none() {
             return goal.judge(t, clock, control.duration(), &self.error);
         }
@@ -257,12 +278,23 @@ impl ControlState {
         goal.judge(t, clock, control.duration(), &distances)
     }
 
+    /// Returns the outcome of the goal of a law that grips. The goal is not reached before the desired force
+    /// has its final value, because the force of an impact of the fingers may reach it for an instant.
+    fn judge_grip(&self, law: &GripForce, goal: &Goal, t: f64, clock: f64) -> Outcome {
+        let is_rising = self.memory.grip.as_ref().is_some_and(|grip| grip.reference < law.force);
+        match goal.judge(t, clock, 0.0, &self.error) {
+            Outcome::Succeeded { .. } if is_rising => Outcome::Unfinished,
+            outcome => outcome,
+        }
+    }
+
     /// Restores the state from a checkpoint.
     ///
     /// # Errors
     /// [`ControlError::OtherMemory`] if the state does not fit this control.
     pub(super) fn restore(&mut self, control: &Control, memory: &ControlMemory) -> Result<(), ControlError> {
-        let sizes = |m: &ControlMemory| [m.anchor.len(), m.pid.integral.len(), m.pid.previous.len()];
+        let grip = |m: &ControlMemory| m.grip.as_ref().map_or(usize::MAX, GripMemory::joints);
+        let sizes = |m: &ControlMemory| [m.anchor.len(), m.pid.integral.len(), m.pid.previous.len(), grip(m)];
         let components = if self.frame.is_some() { 2 } else { self.error.len() };
         let is_known = memory.outcome.miss().is_none_or(|miss| miss.component < components);
         if sizes(memory) != sizes(&self.memory) || !is_known {

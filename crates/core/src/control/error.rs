@@ -23,6 +23,26 @@ pub enum ControlError {
     TooLarge { name: &'static str, value: f64, most: f64 },
     #[error("{name} is {value}; it must not be negative", value = short(*value))]
     Negative { name: &'static str, value: f64 },
+    #[error("{name} is 0; it must be positive")]
+    NotPositive { name: &'static str },
+    #[error("{name} is 0; its sign is the direction of the motion, so give a positive or a negative number")]
+    Zero { name: &'static str },
+    #[error(
+        "control '{control}' grips with {force} N, which requires {effort} N of joint '{joint}', but its effort limit is \
+         {limit} N; reduce the force to {most} N or less, or raise the limit",
+        force = short(*force), effort = short(*effort), limit = short(*limit),
+        most = short(force * limit / effort)
+    )]
+    GripEffort { control: String, joint: String, force: f64, effort: f64, limit: f64 },
+    #[error(
+        "control '{control}' grips by contact forces, but no contact with a normal force involves a link that joint \
+         '{joint}' moves; declare a contact between the links of its finger and the object"
+    )]
+    FingerWithoutContact { control: String, joint: String },
+    #[error(
+        "control '{control}' closes a gripper to a force and has no reference, so '{option}' has no effect; omit it"
+    )]
+    GripOption { control: String, option: &'static str },
     #[error(
         "frame '{frame}' is moved by {joints}, but controlling its position and attitude requires at least 6 \
          joints between the frame and the base; control another frame, or control the joints instead",
@@ -225,6 +245,8 @@ impl ControlError {
             | Self::NotFinite { .. }
             | Self::TooLarge { .. }
             | Self::Negative { .. }
+            | Self::NotPositive { .. }
+            | Self::Zero { .. }
             | Self::TooFewJoints { .. }
             | Self::NoSuchFrame { .. }
             | Self::GainOfEffort { .. }

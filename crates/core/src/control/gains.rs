@@ -35,6 +35,14 @@ impl PerJoint {
         check_numbers(name, &self.0)
     }
 
+    /// Checks that there is one number, or one for each of `count` joints, and that all numbers are finite,
+    /// not zero and at most [`LARGEST`] in magnitude.
+    pub(super) fn check_signed(&self, name: &'static str, count: usize) -> Result<(), ControlError> {
+        self.check_count(name, count)?;
+        check_size(name, &self.0)?;
+        if self.0.contains(&0.0) { Err(ControlError::Zero { name }) } else { Ok(()) }
+    }
+
     /// Checks that there is one limit, or one for each of `count` components, and that no limit is negative
     /// or NaN. Infinity means no limit.
     pub(super) fn check_limit(&self, name: &'static str, count: usize) -> Result<(), ControlError> {

@@ -9,6 +9,7 @@ use super::control_law::{ControlLaw, Interface};
 use super::controller::Controller;
 use super::error::ControlError;
 use super::external::External;
+use super::grip_force::GripForce;
 use super::joint_computed_torque::JointComputedTorque;
 use super::joint_pid::JointPid;
 use crate::model::Model;
@@ -24,6 +25,8 @@ pub enum Law {
     Pid(JointPid, JointReference),
     /// Compliance control of a frame.
     Compliance(Box<Compliance>, TaskReference),
+    /// Law that closes a gripper to a force.
+    Grip(Box<GripForce>),
     /// Law that follows external commands.
     External(Box<External>),
     /// User-defined controller and, if it tracks a frame, the index and the reference of that frame.
@@ -38,6 +41,7 @@ impl Law {
             Self::JointComputedTorque(law, _) => law,
             Self::Pid(law, _) => law,
             Self::Compliance(law, _) => &**law,
+            Self::Grip(law) => &**law,
             Self::External(law) => &**law,
             Self::User(controller, _) => controller,
         }
@@ -50,6 +54,7 @@ impl Law {
             Self::JointComputedTorque(law, _) => law,
             Self::Pid(law, _) => law,
             Self::Compliance(law, _) => &mut **law,
+            Self::Grip(law) => &mut **law,
             Self::External(law) => &mut **law,
             Self::User(controller, _) => controller,
         }
@@ -61,7 +66,7 @@ impl Law {
             Self::TaskComputedTorque(law, reference) => Some((law.frame, reference)),
             Self::Compliance(law, reference) => Some((law.frame, reference)),
             Self::User(_, tracked) => tracked.as_ref().map(|(frame, reference)| (*frame, reference)),
-            Self::JointComputedTorque(..) | Self::Pid(..) | Self::External(_) => None,
+            Self::JointComputedTorque(..) | Self::Pid(..) | Self::Grip(_) | Self::External(_) => None,
         }
     }
 
@@ -69,7 +74,19 @@ impl Law {
     pub fn joint_reference(&self) -> Option<&JointReference> {
         match self {
             Self::JointComputedTorque(_, reference) | Self::Pid(_, reference) => Some(reference),
-            Self::TaskComputedTorque(..) | Self::Compliance(..) | Self::External(_) | Self::User(..) => None,
+            Self::TaskComputedTorque(..)
+            | Self::Compliance(..)
+            | Self::Grip(_)
+            | Self::External(_)
+            | Self::User(..) => None,
+        }
+    }
+
+    /// Returns the law if it closes a gripper to a force.
+    pub fn grip(&self) -> Option<&GripForce> {
+        match self {
+            Self::Grip(law) => Some(law),
+            _ => None,
         }
     }
 

@@ -9,7 +9,9 @@ use crate::contact::{Contact, ContactError};
 use crate::control::check_controls;
 use crate::environment::BodyIndex;
 use crate::model::{BASE_NQ, Model};
-use crate::world::{Action, Event, Seat, System, WorldError, check_brakes, check_events, check_names};
+use crate::world::{
+    Action, Event, LatchContact, Seat, System, When, WorldError, check_brakes, check_events, check_names,
+};
 
 /// Accepted time steps, s. A value outside this range was probably given in a wrong unit.
 const STEPS: std::ops::RangeInclusive<f64> = 1e-12..=1e9;
@@ -63,6 +65,7 @@ impl Simulation {
         check_events(&self.systems, &self.events)?;
         check_seats(&self.events, self.time_step)?;
         check_contacts(&self.contacts)?;
+        check_latches(&self.events, &self.contacts)?;
         self.check_each(|system| system.closed_start().map(|_| ()))?;
         if self.engine.is_some() {
             self.check_engine()?;
@@ -183,6 +186,31 @@ fn check_contacts(contacts: &[Contact]) -> Result<(), ContactError> {
             return Err(ContactError::DuplicateName { name: contact.name.clone() });
         }
         contact.check()?;
+    }
+    Ok(())
+}
+
+/// Checks that the contacts of latches exist, have normal forces and are between the systems of the capture.
+fn check_latches(events: &[Event], contacts: &[Contact]) -> Result<(), WorldError> {
+    for Event { name, when, action } in events {
+        let (When::Latch(envelope), Action::Capture { by, of, .. }) = (when, action) else { continue };
+        for contact in &envelope.touching {
+            let problem = match contacts.iter().find(|declared| declared.name == *contact) {
+                None => LatchContact::Unknown {
+                    known: contacts.iter().map(|contact| contact.name.clone()).collect(),
+                },
+                Some(declared) if declared.law.is_none() => LatchContact::NoForce,
+                Some(declared) => {
+                    let systems = declared.systems();
+                    if [by, of].iter().all(|place| systems.contains(&place.system)) && systems.len() == 2 {
+                        continue;
+                    }
+                    LatchContact::OtherSystems
+                }
+            };
+            let (event, contact) = (name.clone(), contact.clone());
+            return Err(WorldError::LatchContact { event, contact, problem });
+        }
     }
     Ok(())
 }

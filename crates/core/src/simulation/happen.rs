@@ -49,9 +49,10 @@ impl<S: Scalar> RunState<'_, S> {
     /// Determines which latches satisfy their conditions at `t`, s, and sets or clears the times at which
     /// their captures are due.
     fn update_latches(&mut self, t: f64) {
-        let EquationsOfMotion { trees, latches, .. } = &mut self.equations;
+        let EquationsOfMotion { trees, latches, contacts, .. } = &mut self.equations;
         for latch in latches {
-            let holds = Latch::holds(latch.inside(trees, &self.state.trees));
+            latch.is_touching = contacts.are_touching(&latch.touching);
+            let holds = latch.is_touching && Latch::holds(latch.inside(trees, &self.state.trees));
             if holds != latch.is_held {
                 latch.is_held = holds;
                 let state = &mut self.events.states[latch.event];

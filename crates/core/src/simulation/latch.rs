@@ -18,6 +18,10 @@ pub(crate) struct Latch {
     /// model.
     pub(super) frames: [(usize, usize); 2],
     pub(super) envelope: Envelope,
+    /// Indices of the contacts that must touch.
+    pub(super) touching: Vec<usize>,
+    /// True if these contacts touched at the start of the step.
+    pub(super) is_touching: bool,
     /// True while the conditions hold.
     pub(super) is_held: bool,
 }
@@ -50,8 +54,12 @@ impl Latch {
     }
 
     /// Returns the margin to the next change of [`Latch::is_held`], negative if the change is overdue;
-    /// `inside` is a value of [`Latch::inside`].
+    /// `inside` is a value of [`Latch::inside`]. Contacts change between steps, so that the margin is infinite
+    /// while they do not touch.
     pub(super) fn margin(&self, inside: f64) -> f64 {
+        if !self.is_touching {
+            return f64::INFINITY;
+        }
         if self.is_held { inside + 2.0 * ROUNDING } else { -inside }
     }
 }

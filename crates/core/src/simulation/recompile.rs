@@ -105,14 +105,17 @@ impl<'a, S: Scalar> RunState<'a, S> {
     pub(super) fn find_latches(&mut self) {
         let mut latches = Vec::new();
         for (event, (declared, state)) in self.events.list.iter().zip(&self.events.states).enumerate() {
-            let (When::Latch(envelope), Action::Capture { by, of, .. }) = (declared.when, declared.action)
+            let (When::Latch(envelope), &Action::Capture { by, of, .. }) = (&declared.when, &declared.action)
             else {
                 continue;
             };
             let frames = [by, of].map(|place| self.frame_in_tree(place));
             let is_apart = !self.connections.connected_to(by.system).contains(&of.system);
             if state.happened.is_none() && is_apart {
-                latches.push(Latch { event, frames, envelope, is_held: state.is_held });
+                let touching = self.equations.contacts.numbers_of(&envelope.touching);
+                let is_touching = self.equations.contacts.are_touching(&touching);
+                let (envelope, is_held) = (envelope.clone(), state.is_held);
+                latches.push(Latch { event, frames, envelope, touching, is_touching, is_held });
             }
         }
         self.equations.latches = latches;

@@ -92,6 +92,7 @@ impl<S: Scalar> RunSystem<'_, S> {
                 let outcome = set.outcome(i);
                 let component = outcome.miss().map(|miss| match control.law.task() {
                     Some(_) => ["position", "attitude"][miss.component].to_owned(),
+                    None if control.law.grip().is_some() => "force".to_owned(),
                     None => model.joints()[control.joints[miss.component]].name.clone(),
                 });
                 GoalResult { name: control.name.clone(), outcome, component }

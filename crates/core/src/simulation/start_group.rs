@@ -191,6 +191,7 @@ impl Shared {
         let tracked = (*tool, reference.as_ref());
         let mut controllers = Controllers::new(controls, tracked, model, self.time_step, !knows.is_empty())?;
         controllers.set.check_internal_forces(model, &loops)?;
+        controllers.set.check_fingers(model, &self.touching_bodies(number, model))?;
         if self.has_engine {
             controllers.set.assume_creeping_friction();
         }
@@ -276,6 +277,15 @@ impl Shared {
         self.integrator == Integrator::DormandPrince
     }
 
+    /// Returns the indices of the bodies of a system (index in the group) on which contacts may exert normal
+    /// forces.
+    fn touching_bodies(&self, system: usize, model: &Model) -> Vec<usize> {
+        let with_forces = self.contacts.iter().filter(|contact| contact.law.is_some());
+        let sides = with_forces.flat_map(|contact| contact.sides.iter().flatten());
+        let own = sides.filter(|side| side.frame.system == system);
+        own.map(|side| model.frames()[side.frame.frame].body).collect()
+    }
+
     /// Creates the schedule of a run with the planned end `duration`, s. Steps of an adaptive integrator end
     /// at grid points only if there are latches or contacts, and at control ticks only if there are controls.
     fn schedule(&self, duration: Option<f64>, systems: &[&mut System], events: &[Event]) -> Schedule {
@@ -315,10 +325,9 @@ impl Shared {
 /// Returns true if the reference of the tool or a control may depend on the position of the robot in W.
 fn tracks_world(system: &System) -> bool {
     system.reference.is_some()
-        || system
-            .controls
-            .iter()
-            .any(|Control { law, .. }| law.joint_reference().is_none() && law.external().is_none())
+        || system.controls.iter().any(|Control { law, .. }| {
+            law.joint_reference().is_none() && law.external().is_none() && law.grip().is_none()
+        })
 }
 
 /// Returns the index in the group of the system with the index `system` in the world; `None` if it belongs to

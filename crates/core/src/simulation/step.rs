@@ -63,6 +63,7 @@ impl<S: Scalar> RunState<'_, S> {
         self.take_touches();
         if self.has_controls() {
             self.equations.members.follow(&self.equations.trees, &self.state.trees);
+            self.pass_normal_forces();
         }
         // 4 loads of the environment, 5 controllers that are due
         self.loads_and_controllers(interval, end)?;
@@ -107,6 +108,21 @@ impl<S: Scalar> RunState<'_, S> {
     /// Returns true if any system has controls, which require the state in the coordinates of their system.
     fn has_controls(&self) -> bool {
         self.systems.iter().any(|run| !run.controllers.set.controls().is_empty())
+    }
+
+    /// Passes the normal forces of the contacts to the controllers that use them.
+    fn pass_normal_forces(&mut self) {
+        let Self { equations: EquationsOfMotion { trees, members, contacts, .. }, systems, .. } = self;
+        for (number, run) in systems.iter_mut().enumerate() {
+            if run.controllers.set.uses_normal_forces() {
+                let model = match members.places[number] {
+                    Place::Tree(tree) => &trees[tree].model,
+                    Place::Part(part) => &members.parts[part].own.model,
+                };
+                let body = |frame: usize| model.frames()[frame].body;
+                contacts.normal_forces(number, body, run.controllers.set.normal_forces_mut());
+            }
+        }
     }
 
     /// Finds the systems whose controllers are due at `t`, s. Controllers are due at their ticks and when an

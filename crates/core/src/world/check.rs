@@ -158,9 +158,9 @@ fn check_when(events: &[Event], event: &Event) -> Result<(), WorldError> {
     };
     let is_time = |t: f64| t.is_finite() && t >= 0.0;
     const LATER: &str = "zero or positive, and finite";
-    match event.when {
-        When::At(t) => check("the time", t, "s", LATER, is_time(t)),
-        When::After { event: other, delay } => {
+    match &event.when {
+        &When::At(t) => check("the time", t, "s", LATER, is_time(t)),
+        &When::After { event: other, delay } => {
             if other >= events.len() {
                 let reason = "does not exist; give the index of an event of the world";
                 return Err(WorldError::UnknownEvent { event: name(), other, reason });

@@ -61,6 +61,11 @@ pub enum WorldError {
     #[error("the event '{event}' has a latch, but only a capture can have one; use at, after or on_command")]
     LatchWithoutCapture { event: String },
     #[error(
+        "the latch of the event '{event}' closes only while the contact '{contact}' touches, but {why}",
+        why = why(problem)
+    )]
+    LatchContact { event: String, contact: String, problem: LatchContact },
+    #[error(
         "at t = {time} s the event '{event}' connects '{first}' and '{second}', which are already connected; such a \
          capture closes a loop and cannot seat its frames; remove its 'seat', or release the earlier capture first",
         time = short(*time)
@@ -99,4 +104,36 @@ pub enum WorldError {
     NoSuchEvent { name: String, known: String },
     #[error("the event '{name}' cannot be triggered, because {reason}")]
     NotTriggered { name: String, reason: &'static str },
+}
+
+/// Reason why a latch cannot depend on a contact.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LatchContact {
+    /// There is no contact with this name.
+    Unknown {
+        /// Names of the contacts of the world.
+        known: Vec<String>,
+    },
+    /// The contact has no law of the normal force.
+    NoForce,
+    /// The contact is not between the two systems of the capture.
+    OtherSystems,
+}
+
+/// Returns the reason as part of a message.
+fn why(problem: &LatchContact) -> String {
+    match problem {
+        LatchContact::Unknown { known } if known.is_empty() => {
+            "the world has no contacts; declare one between the links that touch".to_owned()
+        }
+        LatchContact::Unknown { known } => {
+            format!("there is no contact with this name; the contacts are: {}", known.join(", "))
+        }
+        LatchContact::NoForce => {
+            "no normal force acts in it, so it never touches; give it a law of the normal force".to_owned()
+        }
+        LatchContact::OtherSystems => {
+            "it is not between the two systems of the capture; give a contact between both".to_owned()
+        }
+    }
 }

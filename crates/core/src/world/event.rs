@@ -33,7 +33,7 @@ pub struct Event {
 }
 
 /// Condition under which an event happens.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum When {
     /// At the given time, s.
     At(f64),
@@ -54,15 +54,15 @@ impl When {
     /// Returns the time at which an event is scheduled to happen, s; `None` if that depends on the run or on
     /// other events.
     pub fn time(&self) -> Option<f64> {
-        match *self {
-            Self::At(t) => Some(t),
+        match self {
+            Self::At(t) => Some(*t),
             _ => None,
         }
     }
 }
 
 /// Envelope of a latch: the frames must be close to each other and slow relative to each other.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Envelope {
     /// Largest distance and angle between the frames, m and rad.
     pub within: [f64; 2],
@@ -71,6 +71,8 @@ pub struct Envelope {
     pub slower_than: [f64; 2],
     /// Time for which all conditions must hold without interruption, s.
     pub held_for: f64,
+    /// Names of the contacts that must touch, also without interruption.
+    pub touching: Vec<String>,
 }
 
 /// Action of an event.

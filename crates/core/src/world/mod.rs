@@ -17,7 +17,7 @@ pub use assembly::{Assembly, BodyPlace, Member, assemble};
 pub use audit::{Balance, energy, energy_of_change};
 pub use brake::Brake;
 pub use check::{check_brakes, check_events, check_names};
-pub use error::WorldError;
+pub use error::{LatchContact, WorldError};
 pub use event::{Action, BrakeIndex, Envelope, Event, FrameIndex, RigidPose, Seat, Seating, Weld, When};
 pub use groups::{groups, systems_of};
 pub use impulse::{Moving, connected_velocity, impulse_response, loop_impulses};

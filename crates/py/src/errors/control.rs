@@ -64,6 +64,9 @@ impl IntoPython for ControlError {
             Self::PastTrajectory { end, now, .. } => {
                 raise(py, "InputError", &message, &fields!(py, "name": "start", "got": end, "expected": now))
             }
+            Self::NotPositive { name } | Self::Zero { name } => {
+                raise(py, "ControlError", &message, &fields!(py, "name": name, "got": 0.0))
+            }
             Self::Timeout { value } => {
                 raise(py, "ControlError", &message, &fields!(py, "name": "timeout", "got": value))
             }
@@ -73,7 +76,11 @@ impl IntoPython for ControlError {
             Self::UnknownControl { ref name, ref known } => {
                 raise(py, "ControlError", &message, &fields!(py, "name": name, "expected": known.clone()))
             }
-            Self::NotExternal { ref control, .. } | Self::ControlEnded { ref control } => {
+            Self::NotExternal { ref control, .. }
+            | Self::ControlEnded { ref control }
+            | Self::GripEffort { ref control, .. }
+            | Self::GripOption { ref control, .. }
+            | Self::FingerWithoutContact { ref control, .. } => {
                 raise(py, "ControlError", &message, &fields!(py, "name": control))
             }
             Self::OtherControls { .. } | Self::OtherMemory { .. } => plain(py, "CheckpointError", &message),

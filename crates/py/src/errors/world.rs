@@ -23,6 +23,7 @@ impl IntoPython for WorldError {
             | Self::Merged { event, .. }
             | Self::Number { event, .. }
             | Self::LatchWithoutCapture { event }
+            | Self::LatchContact { event, .. }
             | Self::SeatInLoop { event, .. } => event.clone(),
             Self::BrakeTwice { name }
             | Self::BrakeJoint { name, .. }

@@ -1,7 +1,7 @@
 //! Captures and releases, and the conversion of all kinds of events to those of the core.
 
 use super::brake::{PyDisengage, PyEngage, brake_at};
-use crate::arrays::{fixed, list_of, text, wrong_entry};
+use crate::arrays::{fixed, list_of, names_in, text, wrong_entry};
 use crate::errors::{IntoPython, fields, raise};
 use crate::model::attach::isometry;
 use crate::pickling::{ConstructorCall, Reduced, deep_copy};
@@ -51,19 +51,20 @@ impl Condition {
         keywords.set_item("delay", self.delay)?;
         let is_planned = self.at.is_some() || self.after.is_some() || self.latch.is_some();
         keywords.set_item("on_command", !is_planned)?;
-        if let Some(Envelope { within, slower_than, held_for }) = self.latch {
+        if let Some(Envelope { within, slower_than, held_for, touching }) = &self.latch {
             let is_limited = slower_than.iter().any(|rate| rate.is_finite());
             keywords.set_item("within", within)?;
-            keywords.set_item("slower_than", is_limited.then_some(slower_than))?;
+            keywords.set_item("slower_than", is_limited.then_some(*slower_than))?;
             keywords.set_item("held_for", held_for)?;
+            keywords.set_item("touching", touching)?;
         }
         Ok(())
     }
 
     /// Returns the condition of the core for the event `name`; `names` are the names of all events.
     pub(super) fn when(&self, py: Python<'_>, name: &str, names: &[String]) -> PyResult<When> {
-        if let Some(envelope) = self.latch {
-            return Ok(When::Latch(envelope));
+        if let Some(envelope) = &self.latch {
+            return Ok(When::Latch(envelope.clone()));
         }
         match (&self.after, self.at) {
             (Some(after), _) => {
@@ -136,6 +137,9 @@ fn frame_at(
 ///     relative angular speed, rad/s, at which the latch closes; only with ``within``. Default: no limit.
 /// held_for : float
 ///     Time for which the conditions of the latch must hold before the capture, s; only with ``within``.
+/// touching : list of str, optional
+///     Names of contacts between both systems that must touch, which is another condition of the latch; only
+///     with ``within``. Default: none.
 /// seat : float, optional
 ///     Time, s, during which the captured frame moves to ``pose`` after the capture, as with latches and
 ///     grapple fixtures. The motion starts and ends at rest. Default: the relative pose at the capture is
@@ -173,7 +177,7 @@ impl PyCapture {
     #[new]
     #[pyo3(signature = (
         name, frame_a, frame_b, *, at=None, after=None, delay=0.0, on_command=false, within=None, slower_than=None,
-        held_for=0.0, seat=None, pose=None,
+        held_for=0.0, touching=None, seat=None, pose=None,
     ))]
     fn new(
         py: Python<'_>,
@@ -187,6 +191,7 @@ impl PyCapture {
         within: Option<&Bound<'_, PyAny>>,
         slower_than: Option<&Bound<'_, PyAny>>,
         held_for: f64,
+        touching: Option<&Bound<'_, PyAny>>,
         seat: Option<f64>,
         pose: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
@@ -195,14 +200,18 @@ impl PyCapture {
         let after = after.map(|after| event_name(after, "after")).transpose()?;
         let within = within.map(|within| fixed(within, "within", &[2])).transpose()?;
         let slower = slower_than.map(|slower| fixed(slower, "slower_than", &[2])).transpose()?;
-        if within.is_none() && (slower.is_some() || held_for != 0.0) {
+        let touching =
+            touching.map(|names| names_in(names, "touching", "names of contacts", "grip")).transpose()?;
+        if within.is_none() && (slower.is_some() || held_for != 0.0 || touching.is_some()) {
             let message = format!(
-                "the event '{name}' has slower_than or held_for without within; add within, or omit both"
+                "the event '{name}' has slower_than, held_for or touching without within; add within, or omit \
+                 them"
             );
             return Err(raise(py, "WorldError", &message, &fields!(py, "name": name)));
         }
         let slower_than = slower.unwrap_or([f64::INFINITY; 2]);
-        let latch = within.map(|within| Envelope { within, slower_than, held_for });
+        let touching = touching.unwrap_or_default();
+        let latch = within.map(|within| Envelope { within, slower_than, held_for, touching });
         if seat.is_none() && pose.is_some() {
             let message = format!(
                 "the event '{name}' has a pose without seat; add seat, the duration of the motion in s"

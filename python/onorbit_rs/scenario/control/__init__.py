@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Annotated
 
 from pydantic import Field
@@ -12,6 +13,7 @@ from pydantic import Field
 from onorbit_rs.scenario.control.compliance import ComplianceControl, ComplianceController
 from onorbit_rs.scenario.control.computed_torque import ComputedTorqueControl, ComputedTorqueController
 from onorbit_rs.scenario.control.external import ExternalControl, ExternalController
+from onorbit_rs.scenario.control.grip_force import GripForceControl, GripForceController
 from onorbit_rs.scenario.control.joint_computed_torque import (
     JointComputedTorqueControl,
     JointComputedTorqueController,
@@ -26,9 +28,11 @@ __all__ = [
     "AnyController",
     "Controller",
     "ExternalController",
+    "GripForceController",
     "JointLaw",
     "JointPidController",
     "PythonController",
+    "grip_controls",
 ]
 
 AnyController = (
@@ -36,6 +40,7 @@ AnyController = (
     | JointComputedTorqueController
     | JointPidController
     | ComplianceController
+    | GripForceController
     | ExternalController
     | PythonController
 )
@@ -46,7 +51,13 @@ _Controls = (
     | ComplianceControl
     | JointComputedTorqueControl
     | JointPidControl
+    | GripForceControl
     | ExternalControl
     | PythonControl
 )
 AnyControl = Annotated[_Controls, Field(discriminator="kind"), of_kind(_Controls)]
+
+
+def grip_controls(controls: Sequence[AnyControl] | None) -> tuple[str, ...]:
+    """Return the names of the controls that close a gripper to a force."""
+    return tuple(control.name for control in controls or () if isinstance(control, GripForceController))

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from onorbit_rs.common.suggestions import did_you_mean
 from onorbit_rs.scenario.control.external import ExternalController
+from onorbit_rs.scenario.control.grip_force import GripForceController
 from onorbit_rs.scenario.control.law import JointLaw, TaskLaw
 from onorbit_rs.scenario.control.selection import tool_of
 from onorbit_rs.scenario.errors import inconsistent
@@ -82,7 +83,7 @@ def _check_frame(reference: Any, systems: list[str], at: Location) -> None:
 def _checked(law: Any, reference: Any, tool: str | None, scenario: Scenario, at: Location) -> Any:
     """Return the reference of a control law, or the default; raise an error if it does not suit the law."""
     kind, is_task = law.kind, isinstance(reference, TaskReference)
-    if isinstance(law, ExternalController):
+    if isinstance(law, (ExternalController, GripForceController)):
         return _without_reference(law, reference, at)
     if isinstance(law, JointLaw):
         if is_task:
@@ -116,16 +117,19 @@ def _checked(law: Any, reference: Any, tool: str | None, scenario: Scenario, at:
     return reference
 
 
-def _without_reference(law: ExternalController, reference: Any, at: Location) -> None:
-    """Raise an error if a law that follows commands has a reference, a goal or ``starts_at_present``."""
+def _without_reference(law: ExternalController | GripForceController, reference: Any, at: Location) -> None:
+    """Raise an error if a law without a reference has one, or another key that has no effect."""
+    is_external = isinstance(law, ExternalController)
+    why = "gets its motion from commands" if is_external else "closes a gripper to a force"
     for key, given in [
         ("reference", reference is not None),
-        ("goal", getattr(law, "goal", None) is not None),
+        ("goal", is_external and getattr(law, "goal", None) is not None),
         ("starts_at_present", getattr(law, "starts_at_present", False)),
+        ("internal_forces", not is_external and bool(getattr(law, "internal_forces", None))),
     ]:
         if given:
             raise inconsistent(
                 (*at, key),
-                f"the controller external gets its motion from commands, so it has no '{key}'; remove this "
-                "key, or use the controller joint_computed_torque",
+                f"the controller {law.kind} {why}, so it has no '{key}'; remove this key, or use the "
+                "controller joint_computed_torque",
             )

@@ -63,6 +63,7 @@ JointNumber = Annotated[_PerJoint, _per_joint_reader(units.NUMBER)]
 JointStiffnessGain = Annotated[_PerJoint, _per_joint_reader(units.STIFFNESS)]
 JointRateGain = Annotated[_PerJoint, _per_joint_reader(units.RATE)]
 JointEffort = Annotated[_PerJoint, _per_joint_reader(units.TORQUE, units.FORCE)]
+JointRates = Annotated[_PerJoint, _per_joint_reader(units.ANGULAR_RATE, units.SPEED)]
 JointTolerance = Annotated[_PerJoint, _per_joint_reader(units.ANGLE, units.LENGTH)]
 
 

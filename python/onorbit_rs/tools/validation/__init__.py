@@ -28,6 +28,7 @@ from onorbit_rs.tools.validation import (
     contact_grasp,
     contact_rigid,
     earth,
+    grasp,
     gravity,
     kepler,
     loops,
@@ -54,7 +55,7 @@ CASES: tuple[Case, ...] = tuple(
         kepler, sgp4, nasa, rotation, earth, gravity, secular, air_and_light, relative, bodies, robots,
         conservation, capture, seating, brakes, springs, loops, loops_gauss,
         loops_drift, against_pinocchio_loops, contact, contact_boxes,
-        contact_friction, contact_grasp, contact_rigid, worlds, order, against_pinocchio, against_mujoco,
+        contact_friction, contact_grasp, contact_rigid, grasp, worlds, order, against_pinocchio, against_mujoco,
         against_sgp4, against_spart,
     )
     for case in module.CASES

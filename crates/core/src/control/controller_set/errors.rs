@@ -1,8 +1,9 @@
 //! Desired motions and tracking errors of the controls.
 
 use super::ControllerSet;
-use crate::control::control_state::Phase;
+use crate::control::control_state::{ControlState, Phase};
 use crate::control::error::ControlError;
+use crate::control::fingers::measure;
 use crate::dynamics::{Data, base_rotation, frame_pose};
 use crate::model::{BASE_NQ, BASE_NV, Model};
 use crate::spatial::{Scalar, Vec3};
@@ -46,6 +47,11 @@ impl<S: Scalar> ControllerSet<'_, S> {
                 } else {
                     (rot, pos)
                 };
+            }
+            if let Some(law) = control.law.grip().filter(|_| state.is_running()) {
+                let ControlState { fingers, finger_forces, .. } = state;
+                let robot = (model, data, &self.q[..]);
+                measure(fingers, &law.closing_rate, &self.normal_forces, robot, finger_forces);
             }
             if state.is_running() {
                 let evaluated = state.evaluate(control, t, &self.q[BASE_NQ..], &self.v[BASE_NV..]);

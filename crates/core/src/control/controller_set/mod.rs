@@ -4,6 +4,7 @@ mod activation;
 mod commands;
 mod errors;
 mod friction;
+mod grips;
 mod loads;
 mod torques;
 
@@ -18,6 +19,7 @@ use crate::control::hybrid_dynamics::HybridDynamics;
 use crate::control::known_tree::KnownTree;
 use crate::control::law::Law;
 use crate::control::looped_dynamics::{Looped, LoopedDynamics};
+use crate::control::normal_force::NormalForce;
 use crate::control::pseudo_inverse::{PseudoInverse, ROWS};
 use crate::dynamics::{Data, FreeFloating, free_floating_recursion};
 use crate::model::Model;
@@ -66,6 +68,8 @@ pub struct ControllerSet<'a, S> {
     known: Option<Box<KnownTree>>,
     /// Solver for the torques of a robot with closed loops; `None` if the robot has none.
     looped: Option<Box<Looped<S>>>,
+    /// Normal forces of the contacts on the robot; empty if no law uses them.
+    normal_forces: Vec<NormalForce>,
     /// True if the next update repeats the previous one; see [`ControllerSet::set_repeated`].
     is_repeated: bool,
 }
@@ -95,8 +99,8 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         let needs_error = |control: &Control| control.law.control_law().uses_error() && !is_whole(control);
         let compensates =
             |control: &Control| control.law.control_law().compensates_environment() == Some(true);
-        let states: Vec<_> =
-            controls.iter().map(|control| ControlState::new(control, needs_error(control))).collect();
+        let state = |control: &Control| ControlState::new(control, model, needs_error(control));
+        let states: Vec<_> = controls.iter().map(state).collect();
         let reads_state =
             |(control, state): (&Control, &ControlState)| state.needs_error || !is_whole(control);
         Ok(Self {
@@ -123,6 +127,7 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
             group: [zeros(n), zeros(n), zeros(n)],
             known: None,
             looped: looped(model, tasks),
+            normal_forces: Vec::new(),
             is_repeated: false,
         })
     }

@@ -3,7 +3,7 @@
 use super::{ControllerSet, active_loops, running};
 use crate::control::control::Control;
 use crate::control::control_law::{ControlLaw, EffortInput, EffortWork, JointCommand};
-use crate::control::control_state::ControlState;
+use crate::control::control_state::{ControlMemory, ControlState};
 use crate::control::error::ControlError;
 use crate::control::known_tree::KnownTree;
 use crate::control::looped_dynamics::Looped;
@@ -61,8 +61,10 @@ impl<S: Scalar> ControllerSet<'_, S> {
                 error: (&state.error, velocity_error),
                 jacobian: &self.jacobian[..ROWS * k],
                 rates,
+                fingers: (&state.fingers, &state.finger_forces),
             };
-            let work = EffortWork { pid: &mut state.memory.pid, inverse: &mut self.inverse, scratch };
+            let ControlMemory { pid, grip, .. } = &mut state.memory;
+            let work = EffortWork { pid, grip: grip.as_mut(), inverse: &mut self.inverse, scratch };
             control.law.control_law_mut().efforts(&input, work, tau)?;
             joints.iter().zip(tau).for_each(|(&j, tau)| self.tau[j] = *tau);
         }

@@ -12,6 +12,7 @@ mod hold;
 mod mobility;
 mod mode;
 mod near;
+mod normal_forces;
 mod pressure;
 mod record;
 mod responses;

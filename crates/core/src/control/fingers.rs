@@ -1,0 +1,98 @@
+//! Fingers of a gripper and the contact forces that act on them.
+
+use super::gains::PerJoint;
+use super::normal_force::NormalForce;
+use crate::dynamics::{Data, base_rotation};
+use crate::model::{Axis, Constraint, Model};
+use crate::spatial::{Scalar, Vec3};
+
+/// Joint that moves a finger: a joint of the group of a control, or a joint that mimics one of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Finger {
+    /// Index in the group of the joint, or of the joint that it mimics.
+    pub(super) place: usize,
+    /// Index of the joint.
+    pub(super) joint: usize,
+    /// Rate of the joint divided by the rate of the joint of the group.
+    pub(super) ratio: f64,
+}
+
+/// Normal forces that oppose the closing motion of a finger.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct FingerForce {
+    /// Sum of their magnitudes, N.
+    pub(super) normal: f64,
+    /// Sum of the efforts with which they act on the joint of the finger, N m (N).
+    pub(super) effort: f64,
+}
+
+/// Returns the fingers that a group of joints (indices) moves.
+pub(super) fn fingers_of(joints: &[usize], model: &Model) -> Vec<Finger> {
+    let own = joints.iter().enumerate().map(|(place, &joint)| Finger { place, joint, ratio: 1.0 });
+    let mut fingers: Vec<Finger> = own.collect();
+    let mut number = 0;
+    while number < fingers.len() {
+        let lead = fingers[number];
+        let followers = model.closures().iter().filter_map(|closure| match closure.constraint {
+            Constraint::Mimic { joint, leader, ratio, .. } if leader == lead.joint => {
+                Some(Finger { joint, ratio: ratio * lead.ratio, ..lead })
+            }
+            _ => None,
+        });
+        fingers.extend(followers);
+        number += 1;
+    }
+    fingers
+}
+
+impl Finger {
+    /// Returns true if the joint of the finger moves a body (index).
+    pub(super) fn moves(&self, body: usize, model: &Model) -> bool {
+        let first = self.joint + 1;
+        (first..model.nodes()[first].end).contains(&body)
+    }
+
+    /// Returns the effort, N m (N), with which a force acts on the joint of the finger: `aᵀ (r × F)` about
+    /// the axis `a` of a revolute joint, or `aᵀ F` along that of a prismatic joint. Requires the kinematics
+    /// of the configuration `q` in `data`.
+    fn effort<S: Scalar>(&self, force: &NormalForce, (model, data, q): (&Model, &Data<S>, &[f64])) -> f64 {
+        let body = &data.bodies[self.joint + 1];
+        let rot_wb = base_rotation(q);
+        let axis = rot_wb * body.rot_bk.z.map(|x| x.value());
+        let origin = rot_wb * body.pos_b.map(|x| x.value()) + Vec3::from_slice(q);
+        match model.nodes()[self.joint + 1].axis {
+            Axis::Revolute => axis.dot((force.point - origin).cross(force.force)),
+            Axis::Prismatic => axis.dot(force.force),
+        }
+    }
+}
+
+/// Computes the contact forces that oppose the closing motion of each finger. Contacts of fingers with each
+/// other do not count. `closing_rate` has the sign of the closing motion for each joint of the group.
+/// Requires the kinematics of the configuration `q` in `data`.
+pub(super) fn measure<S: Scalar>(
+    fingers: &[Finger],
+    closing_rate: &PerJoint,
+    forces: &[NormalForce],
+    robot: (&Model, &Data<S>, &[f64]),
+    out: &mut [FingerForce],
+) {
+    out.fill(FingerForce::default());
+    let is_finger = |body: usize| fingers.iter().any(|finger| finger.moves(body, robot.0));
+    for force in forces.iter().filter(|force| !force.other.is_some_and(is_finger)) {
+        for (finger, out) in fingers.iter().zip(&mut *out) {
+            if finger.moves(force.body, robot.0) {
+                let effort = finger.effort(force, robot);
+                if effort * finger.ratio * closing_rate.at(finger.place) < 0.0 {
+                    out.normal += force.force.norm();
+                    out.effort += effort;
+                }
+            }
+        }
+    }
+}
+
+/// Returns the mean normal force of the fingers, N.
+pub(super) fn mean_force(forces: &[FingerForce]) -> f64 {
+    forces.iter().map(|force| force.normal).sum::<f64>() / forces.len().max(1) as f64
+}

@@ -1,0 +1,77 @@
+"""Grippers that close to a force."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from onorbit_rs import _core
+from onorbit_rs.scenario.control.control import Control
+from onorbit_rs.scenario.control.gains import JointEffort, JointNumber, JointRates
+from onorbit_rs.scenario.control.initial_mobility import InitialMobility, square
+from onorbit_rs.scenario.control.law import Law, SampledGain, arguments
+from onorbit_rs.scenario.fields import Force, NotNegative, Positive, Rate, Time
+from onorbit_rs.scenario.part import Part
+
+
+class GripForceController(Law):
+    """Fingers of a gripper that close until they touch, and then to a given force.
+
+    The fingers are moved by the joints of the group, or by joints that mimic them. The force of the grip is
+    the mean normal force of the fingers, from the contacts of the scenario, which must include each finger.
+    There is no ``reference``.
+    """
+
+    kind: Literal["grip_force"] = "grip_force"
+    force: Annotated[Force, Positive]
+    """Normal force of each finger."""
+    closing_rate: JointRates
+    """Rate of the joints until all fingers touch; the sign is that of the closing motion."""
+    damping: JointNumber
+    """Damping, N m s/rad, or N s/m for prismatic joints."""
+    ramp: Annotated[Time, NotNegative] = 0.5
+    """Time in which the desired force would increase from zero to ``force``."""
+    integral: Annotated[Rate, NotNegative] = 5.0
+    """Gain of the integral of the force error, 1/s."""
+    stiffness: JointNumber = 0.0
+    """Stiffness against motions of independent joints together with the object, N m/rad or N/m."""
+    effort_limit: JointEffort | None = None
+    """Largest effort, N m or N. Default: the limits in the robot's file."""
+
+    def build_law(self, model: _core.Model, tool: str | None, folder: Path, *, runs_code: bool = True) -> Any:
+        """Return the engine's control law object."""
+        return _core.GripForce(
+            self.force,
+            ramp=self.ramp,
+            integral=self.integral,
+            **arguments(
+                closing_rate=self.closing_rate,
+                damping=self.damping,
+                stiffness=self.stiffness,
+                effort_limit=self.effort_limit,
+            ),
+        )
+
+    def sampled_gains(self, mobility: InitialMobility) -> Iterator[SampledGain]:
+        """Yield the gains whose largest stable value depends on the control period."""
+        joints, of_joints = mobility.joint_count(self), mobility.of_joints(self)
+        yield "integral", 1, square(self.integral, 1)
+        yield "damping", 1, of_joints @ square(self.damping, joints)
+        yield "stiffness", 2, of_joints @ square(self.stiffness, joints)
+
+
+class ForceGoal(Part):
+    """Goal of a grip: the force must be within a tolerance after the end of the ramp."""
+
+    tolerance: Annotated[Force, Positive]
+    """Largest difference between the force of the grip and the desired force."""
+    time: Annotated[Time, NotNegative] | None = None
+    """Time allowed after the start of the control. Default: unlimited."""
+
+
+class GripForceControl(GripForceController, Control):
+    """Fingers of a gripper, moved by the joints of a group, that close to a given force."""
+
+    goal: ForceGoal | None = None
+    """Goal; the summary of the run contains its result."""

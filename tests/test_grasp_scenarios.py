@@ -1,0 +1,138 @@
+"""Scenarios with grippers and docking gear: what happens in the bundled ones, and bad input."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import onorbit_rs as oo
+from onorbit_rs import scenarios
+from onorbit_rs.exceptions import OnOrbitError
+from onorbit_rs.scenario import load
+from onorbit_rs.scenario.build_world import build_world
+
+
+def kinds(run: oo.Run, *wanted: str) -> list[dict[str, Any]]:
+    return [event for event in run.summary["events"] if event["kind"] in wanted]
+
+
+def relative(run: oo.Run, one: str, frame: str, other: str, of: str) -> np.ndarray:
+    """Returns the positions, m, (T, 3), of a frame of one system in a frame of another one."""
+    models, trace = run.models, run.trace
+    found = []
+    for q, p in zip(trace[one].q, trace[other].q, strict=True):
+        a, b = models[one].frame_pose(q, frame), models[other].frame_pose(p, of)
+        found.append(a[:3, :3].T @ (b[:3, 3] - a[:3, 3]))
+    return np.array(found)
+
+
+@pytest.fixture(scope="module")
+def grasped() -> oo.Run:
+    return oo.run("grasp_and_capture", quiet=True)
+
+
+def test_a_soft_capture_becomes_rigid(grasped: oo.Run) -> None:
+    summary, trace = grasped.summary, grasped.trace
+    assert summary["certificate_passed"] and not summary["warnings"]
+    (capture,) = kinds(grasped, "capture")
+    downs = [event["time_s"] for event in kinds(grasped, "touch_down") if event["time_s"] < capture["time_s"]]
+    ups = [event["time_s"] for event in kinds(grasped, "lift_off") if event["time_s"] < capture["time_s"]]
+    assert 0.0 <= capture["time_s"] - 6.0 - max(downs) < 0.05 and max(ups) < max(
+        downs
+    )  # 6 s of both contacts
+    servicer = summary["systems"]["servicer"]
+    assert servicer["control_grip_result"] == "succeeded"
+    time = np.asarray(trace["servicer"].time)
+    place = relative(grasped, "servicer", "grasp", "target", "handle")
+    held = (time > 14.0) & (time < capture["time_s"] - 0.1)
+    error = np.asarray(trace["servicer"].tracking["grip"])[held, 0]
+    assert np.abs(error).max() < 0.2  # of 25 N, while the arm stops the satellite
+    assert np.linalg.norm(place[held] - place[held][-1], axis=1).max() < 1e-3  # the pads hold it
+    assert 1e-3 < np.linalg.norm(place[held][-1]) < 1e-2  # where it was grasped
+    assert np.linalg.norm(place[-1]) < 1e-9  # seated
+
+
+def test_momentum_and_energy_are_kept_through_the_whole_event(grasped: oo.Run) -> None:
+    """The momentum of the group, less that of the environment, relative to the momenta of the bodies."""
+    checks = {name: value for name, value, *_ in grasped.trace.certificate()}
+    assert checks["servicer+target/linear_momentum_drift_rel"] < 1e-12
+    assert checks["servicer+target/angular_momentum_drift_rel"] < 1e-12
+    assert checks["servicer+target/energy_balance_error_rel"] < 1e-8
+
+
+@pytest.mark.parametrize(
+    ("name", "contact", "frames"),
+    [
+        ("docking_probe_drogue", "funnel", ("probe_tip", "socket")),
+        ("docking_ring", "rings", ("ring_interface", "ring_interface")),
+    ],
+)
+def test_docking_gear_centres_and_latches(name: str, contact: str, frames: tuple[str, str]) -> None:
+    run = oo.run(name, quiet=True)
+    assert run.summary["certificate_passed"] and not run.summary["warnings"]
+    (docked,) = kinds(run, "capture")
+    (touched,) = [one for one in run.summary["contacts"] if one["name"] == contact]
+    assert touched["first_touch_down_s"] < docked["time_s"] and touched["normal_force_max_n"] < 100.0
+    places = relative(run, "chaser", frames[0], "target", frames[1])
+    first = places[np.searchsorted(run.trace["chaser"].time, touched["first_touch_down_s"])]
+    assert np.linalg.norm(first[:2]) > 0.02  # beside the axis at the touch-down
+    assert np.linalg.norm(places[-1]) < 1e-9
+
+
+def changed(name: str, tmp_path: Path, *pairs: tuple[str, str]) -> Path:
+    text = scenarios.path(name).read_text(encoding="utf-8")
+    for old, new in pairs:
+        assert old in text
+        text = text.replace(old, new)
+    path = tmp_path / "changed.yaml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+GRIP = "systems.servicer.controllers[2]"
+BAD: list[tuple[str, str, str, str, str]] = [
+    ("grasp_and_capture", "closing_rate: -2 cm/s", "closing_rate: 2 cm/s", GRIP,
+     "do not approach any other link of 'servicer'"),
+    ("grasp_and_capture", "between: [servicer/right_finger", "between: [servicer/left_finger", GRIP,
+     "do not approach any other link"),
+    ("grasp_and_capture", "force: 25 N", "force: 80 N", GRIP,
+     "requires 160 N of joint 'left_jaw', but its effort limit is 150 N"),
+    ("grasp_and_capture", "target/handle]\n    normal", "target/bus]\n    normal", GRIP,
+     "the gripper opens by 0.12 m at most"),
+    ("grasp_and_capture", "[left_pad, right_pad]", "[left_pad, right_pat]",
+     "events[0].when.latch.touching[1]", "no contact is named 'right_pat'; did you mean 'right_pad'?"),
+    ("grasp_and_capture", "        ramp: 1 s\n", "        ramp: 1 s\n        starts_at_present: true\n",
+     f"{GRIP}.starts_at_present", "closes a gripper to a force, so it has no"),
+    ("docking_probe_drogue", "[9 cm, -5 cm, 95 cm]", "[9 cm, -5 cm, 70 cm]",
+     "contacts[0].between", "overlap by"),
+    ("docking_ring", "[chaser/ring, target/ring]", "[chaser/ring_yoke, target/ring]",
+     "contacts[0].between", "link 'ring_yoke' of system 'chaser' has no collision shape"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "where", "message"), BAD, ids=[message for *_, message in BAD]
+)
+def test_bad_input_is_an_error_with_file_line_and_path(
+    name: str, old: str, new: str, where: str, message: str, tmp_path: Path
+) -> None:
+    path = changed(name, tmp_path, (old, new))
+    with pytest.raises(OnOrbitError) as error:
+        scenario = load(path)
+        build_world(scenario)  # type: ignore[arg-type]  # a scenario with systems
+    text = str(error.value)
+    assert "changed.yaml:" in text and where in text and message in text, text
+
+
+def test_a_latch_without_contacts_closes_before_the_grasp() -> None:
+    """Control of the first test: without ``touching``, the latch does not wait for the jaws."""
+    data = load("grasp_and_capture").resolved()
+    data["simulation"]["duration"] = 12.5
+    latch = data["events"][0]["when"]["latch"]
+    assert latch["touching"] == ["left_pad", "right_pad"]
+    latch["touching"], latch["held_for"] = [], 3.0
+    (capture,) = kinds(oo.run(data, quiet=True), "capture")
+    assert capture["time_s"] < 12.0
