@@ -199,8 +199,7 @@ def test_each_warning_has_a_line_of_its_own(tmp_path: Path) -> None:
     inertia = '<inertia ixx="1" iyy="1" izz="3" ixy="0" ixz="0" iyz="0"/>'
     (tmp_path / "odd.urdf").write_text(ODD.format(inertia=inertia))
     settings = {"duration": 0.01, "time_step": 0.01}
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
+    with warnings.catch_warnings(action="ignore"):
         run = oo.run({"robot": str(tmp_path / "odd.urdf"), "simulation": settings}, quiet=True)
     page = page_of(run.summary)
     assert len(run.model.warnings) == 2 == [tag for tag, _ in page.tags].count("li")
@@ -261,8 +260,7 @@ def test_a_body_without_joints_and_without_orbit_has_a_page(tmp_path: Path) -> N
 def test_warnings_of_the_robot_are_on_the_page(tmp_path: Path) -> None:
     data = load("leo_drag_tumble").resolved()
     data["simulation"] |= {"duration": 400.0, "time_step": 10.0}
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
+    with warnings.catch_warnings(action="ignore"):
         oo.run(data, out=tmp_path / "out", quiet=True)
         page = Page(write_report(tmp_path / "out").read_text())
     assert "triangle inequality" in page.text

@@ -23,7 +23,6 @@ from onorbit_rs.report.page import Picture
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
     from onorbit_rs.campaigns.document import CampaignDocument, Condition
@@ -36,6 +35,8 @@ _MOST_VALUES = 20
 """Largest number of dispersed values in the figure of the correlations."""
 _MOST_CASES = 20
 """Largest number of cases in a table."""
+_MOST_PAIRS = 6
+"""Largest number of correlations in the figure of the strongest ones."""
 _LARGEST_SVG = 600_000
 
 
@@ -172,7 +173,7 @@ def _pictures(
     yield _picture("success", about, figures.success_history(fractions, low, high))
     if ranked:
         yield _correlations(ranked, outcomes, series, len(is_success), figures.correlation_map)
-        pairs = [one for one in ranked if one.result != "success"][:6]
+        pairs = [one for one in ranked if one.result != "success"][:_MOST_PAIRS]
         about = "The strongest correlations; cases without success are orange."
         drawn = figures.strongest_pairs(
             [(series[one.value], series[one.result]) for one in pairs], is_success
@@ -185,7 +186,7 @@ def _correlations(
     outcomes: Sequence[str],
     series: dict[str, Series],
     cases: int,
-    draw: Callable[..., Figure],
+    draw: Callable[..., Any],
 ) -> Picture:
     rows = list(dict.fromkeys(one.value for one in ranked))[:_MOST_VALUES]
     found = np.full((len(rows), len(outcomes)), np.nan)
@@ -198,7 +199,7 @@ def _correlations(
     return _picture("sensitivities", about, figure)
 
 
-def _picture(name: str, about: str, figure: Figure) -> Picture:
+def _picture(name: str, about: str, figure: Any) -> Picture:
     from onorbit_rs import figures
 
     content = figures.as_bytes(figure, "svg")

@@ -63,7 +63,7 @@ def _varies(values: Floats) -> bool:
 def _labelled(name: str, values: Floats) -> Result:
     """Return a result with the label of a single run; the owner of a world's number stays in front."""
     owner, _, last = name.rpartition(".")
-    described = row(last, True)  # a truth value keeps the unit of the key, without a prefix
+    described = row(last, True)  # a boolean result keeps the unit of the key, without a prefix
     owner = owner.removeprefix("systems.").removeprefix("events.").removeprefix("contacts.")
     return Result(name, f"{owner}: {described.name}" if owner else described.name, described.unit, values)
 

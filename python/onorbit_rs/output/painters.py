@@ -110,7 +110,7 @@ def _helper_count(figures: int) -> int:
 
 
 def _started() -> subprocess.Popen[bytes]:
-    """Start a helper in a session of its own, where Ctrl-C in the terminal does not reach it."""
+    """Start a helper in a separate session, where Ctrl-C in the terminal does not reach it."""
     return subprocess.Popen(
         [sys.executable, "-c", _PROGRAM.format(path=sys.path)],
         stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, start_new_session=True,

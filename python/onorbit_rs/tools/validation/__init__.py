@@ -55,8 +55,8 @@ CASES: tuple[Case, ...] = tuple(
         kepler, sgp4, nasa, rotation, earth, gravity, secular, air_and_light, relative, bodies, robots,
         conservation, capture, seating, brakes, springs, loops, loops_gauss,
         loops_drift, against_pinocchio_loops, contact, contact_boxes,
-        contact_friction, contact_grasp, contact_rigid, grasp, worlds, order, against_pinocchio, against_mujoco,
-        against_sgp4, against_spart,
+        contact_friction, contact_grasp, contact_rigid, grasp, worlds, order,
+        against_pinocchio, against_mujoco, against_sgp4, against_spart,
     )
     for case in module.CASES
 )  # fmt: skip
