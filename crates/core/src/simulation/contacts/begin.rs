@@ -83,7 +83,7 @@ impl Touching {
         let loading = if is_same { before } else { self.loading(phase, &geometry, motions, state) };
         let slack = |margin: f64| if margin > 0.0 { 0.0 } else { f64::MIN_POSITIVE - 2.0 * margin };
         self.mode.slack = self.margins(&loading).map(slack);
-        if is_repeated && self.rigid.is_some() && self.mode.slack[0] > 0.0 {
+        if is_repeated && self.rigid.is_some() {
             self.mode.slack[0] += self.touching_gap(motions); // the step must not be of length zero again
         }
         Ok(Some(loading))

@@ -37,8 +37,8 @@ impl Touching {
         relative * self.smaller_reach() + ROUNDINGS * self.rounding(motions)
     }
 
-    /// Returns the points of the pieces that touch, with their gaps, m: contact points or, if none of them
-    /// touches although the pieces do, the middle of the witness points.
+    /// Returns the points of the pieces that touch, with their gaps, m: contact points and, if it is not
+    /// near any of these, the middle of the witness points.
     pub(super) fn rigid_points(
         &self,
         motions: &[SideMotion; 2],
@@ -54,8 +54,10 @@ impl Touching {
             (ContactAt { places, at, axes }, -point.depth)
         });
         let mut found: Vec<_> = touching.collect();
-        if found.is_empty() && proximity.distance <= within {
-            found.push((ContactAt { places, at: proximity.center(), axes }, proximity.distance));
+        let (center, near) = (proximity.center(), SAME * self.smaller_reach());
+        let is_known = found.iter().any(|(point, _): &(ContactAt, f64)| (point.at - center).norm() < near);
+        if !is_known && proximity.distance <= within {
+            found.push((ContactAt { places, at: center, axes }, proximity.distance));
         }
         Ok(found)
     }
