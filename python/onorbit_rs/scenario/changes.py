@@ -75,7 +75,7 @@ def changed(data: Any, lines: Lines, changes: Changes) -> tuple[Any, Lines]:
         for depth, step in enumerate(at[:-1]):
             inner = _entry(inner, step, path, at[:depth], at[depth + 1])
         if isinstance(inner, list):
-            _check_index(inner, at[-1], path, at[:-1])
+            _index(inner, at[-1], path, at[:-1])
         elif not isinstance(inner, dict):
             raise _not_inside(path, at[:-1], inner)
         inner[at[-1]] = value
@@ -101,8 +101,7 @@ def misspelt(data: Any, path: str, changes: Changes) -> str:
 def _entry(inner: Any, step: str | int, path: str, at: Location, following: str | int) -> Any:
     """Return the entry ``step``, which is created if it is missing in a mapping."""
     if isinstance(inner, list):
-        _check_index(inner, step, path, at)
-        return inner[step]  # type: ignore[index]
+        return inner[_index(inner, step, path, at)]
     if not isinstance(inner, dict) or isinstance(step, int):
         raise _not_inside(path, at, inner)
     if inner.get(step) is None:
@@ -112,10 +111,12 @@ def _entry(inner: Any, step: str | int, path: str, at: Location, following: str 
     return inner[step]
 
 
-def _check_index(inner: list[Any], step: str | int, path: str, at: Location) -> None:
+def _index(inner: list[Any], step: str | int, path: str, at: Location) -> int:
+    """Return the index of an entry of a list; raise InputError if there is no such entry."""
     if not isinstance(step, int) or step >= len(inner):
         what = f"{_written(at) or 'the scenario'} is a list of {len(inner)}"
         raise _invalid(path, f"{what}; give an index from [0] to [{len(inner) - 1}]")
+    return step
 
 
 def _not_inside(path: str, at: Location, inner: Any) -> InputError:
