@@ -117,6 +117,7 @@ if TYPE_CHECKING:
     from onorbit_rs.simulation.commands import CommandLog
     from onorbit_rs.simulation.replay import replay_commands
     from onorbit_rs.simulation.run import Run, resume, run
+    from onorbit_rs.tables import RecordedRun, read_run
     from onorbit_rs.tools.comparison import Comparison, compare
 
 __all__ = [
