@@ -15,7 +15,9 @@ def test_a_control_law_of_another_robot_is_rejected() -> None:
     law = oo.ComputedTorque(torso, "tool")
     q, v = dual.neutral(), np.zeros(dual.nv)
     hold = oo.Hold(dual.frame_pose(q, "right_tool"))
-    with pytest.raises(ControlError, match="to robot 'humanoid_torso', but the robot is 'humanoid_dual"):
+    with pytest.raises(
+        ControlError, match="to robot 'humanoid_torso', but the robot of the run is 'humanoid_dual"
+    ):
         oo.Simulation(dual, q, v, controller=law, reference=hold, tool="right_tool")
     with pytest.raises(ControlError, match="belongs to robot"):
         oo.rollout(dual, q[None], v[None], steps=2, controller=law, reference=hold)

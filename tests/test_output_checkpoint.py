@@ -74,7 +74,7 @@ def rows_of(out: Path, column: str = "time") -> int:
 def assert_same_trace(out: Path, whole: oo.Run) -> None:
     with np.load(out / "trace.npz") as stored:
         assert set(stored.files) == {*whole.trace.columns(), *NAMES}
-        for name in stored.files:
+        for name in whole.trace.columns():
             assert stored[name].tobytes() == np.asarray(getattr(whole.trace, name)).tobytes(), name
 
 

@@ -61,7 +61,7 @@ def test_a_header_that_claims_too_much_data_takes_no_memory(tmp_path: Path) -> N
     honest = npy(np.zeros(3))
     claims = honest.replace(b"(3,)", b"(9**9,)").replace(b"    \n", b" \n", 1)
     huge = honest.replace(b"(3,), }" + b" " * 13, b"(30000000000000,), }")
-    none = "not an array of real numbers in the format that a run writes"
+    none = "not an array of real numbers or texts in the format that a run writes"
     for member, words in (
         (claims, none), (huge, "contains 24 bytes, but its shape"), (b"\x93NUMPY\x03\x00" + honest[8:], none),
         (npy(np.array([{}])), none), (npy(np.array(["text"])), none), (b"", none), (b"no array", none),

@@ -232,7 +232,7 @@ CONTROLS: list[tuple[str, str, Any, str, Any]] = [
     ("contact", "a rigid ball bounces to rest", contact_rigid, "HEIGHT", 0.1000001),
     ("grasp", "jaws close until they touch", grasp, "JOINT_DAMPING", 2.0001),
     ("grasp", "jaws close to 25 N", grasp, "INTEGRAL", 0.0),
-    ("grasp", "a held bar is pulled out", grasp, "SLIPS", 1.0201),
+    ("grasp", "a held bar is pulled out", grasp, "BAR_MASS", 20.2),
     ("grasp", "a held and loaded bar, the arm moves", grasp_worlds, "MU", 0.15),
     ("grasp", "a held and loaded bar, the arm moves", grasp, "in_hand", contact_alternatives.in_smooth_hand),
     ("grasp", "three revolute fingers", grasp, "FORCE", 25.0 + 1e-7),
@@ -286,7 +286,8 @@ def test_all_cases_pass_within_a_minute_of_processor_time_with_json_output_only(
     before = processor_time_of_children()
     done = subprocess.run(command, capture_output=True, text=True, timeout=600, check=False)
     took = processor_time_of_children() - before
-    assert (done.returncode, done.stderr) == (0, "")
+    assert done.returncode == 0
+    assert all(line.startswith("onorbit: validate: ") for line in done.stderr.splitlines()), "only progress"
     verdicts = json.loads(done.stdout)
     assert len(verdicts) == len(CASES)
     for verdict in verdicts:

@@ -332,5 +332,5 @@ def test_a_tree_that_is_too_large_is_refused_before_the_run():
     model = chain(1001)
     q = model.neutral()
     systems = [oo.System(name, model, q, np.zeros(model.nv)) for name in ("a", "b")]
-    with pytest.raises(oo.exceptions.WorldError, match=r"'grasp' connects two systems.*2000"):
+    with pytest.raises(oo.exceptions.WorldError, match=r"'grasp' would connect two systems.*2000"):
         oo.World(systems, events=[oo.Capture("grasp", "a/base", "b/base", at=1.0)])

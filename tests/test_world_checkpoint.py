@@ -177,7 +177,7 @@ def first_weld(record: Any) -> Any:
             (out / "scenario.yaml").read_text().replace("kp: 1", "kp: 2")), "another scenario"),
         (lambda out, record: record["engine"]["groups"].pop(), "groups of systems"),
         (lambda out, record: first_weld(record)["by"].update(system=9), "frames of the run"),
-        (lambda out, record: record["columns"].pop("target/v"), "'v' has"),
+        (lambda out, record: record["columns"].pop("target/v"), "0 entries for 'v'"),
         (lambda out, record: record["columns"]["target/time"].update(rows=1), "checksum"),
         (lambda out, record: (out / "checkpoint" / "witness%2Fq.f64").unlink(), "damaged"),
     ],

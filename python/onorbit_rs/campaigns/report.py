@@ -174,11 +174,10 @@ def _pictures(
     if ranked:
         yield _correlations(ranked, outcomes, series, len(is_success), figures.correlation_map)
         pairs = [one for one in ranked if one.result != "success"][:_MOST_PAIRS]
-        about = "The strongest correlations; cases without success are orange."
-        drawn = figures.strongest_pairs(
-            [(series[one.value], series[one.result]) for one in pairs], is_success
-        )
-        yield _picture("strongest", about, drawn)
+        if pairs:
+            about = "The strongest correlations; cases without success are orange."
+            shown_pairs = [(series[one.value], series[one.result]) for one in pairs]
+            yield _picture("strongest", about, figures.strongest_pairs(shown_pairs, is_success))
 
 
 def _correlations(
