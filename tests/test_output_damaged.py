@@ -64,8 +64,8 @@ def test_a_header_that_claims_too_much_data_takes_no_memory(tmp_path: Path) -> N
     none = "not an array of real numbers or texts in the format that a run writes"
     for member, words in (
         (claims, none), (huge, "contains 24 bytes, but its shape"), (b"\x93NUMPY\x03\x00" + honest[8:], none),
-        (npy(np.array([{}])), none), (npy(np.array(["text"])), "it has no momentum"), (b"", none), (b"no array", none),
-        (honest[:-8], "contains 16 bytes, but its shape"),
+        (npy(np.array([{}])), none), (npy(np.array(["text"])), "it has no momentum"),
+        (b"", none), (b"no array", none), (honest[:-8], "contains 16 bytes, but its shape"),
     ):  # fmt: skip
         refused(tmp_path, npz(time=member), words)
 
