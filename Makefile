@@ -9,7 +9,7 @@ MATURIN := VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quie
 
 RUST := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
 
-.PHONY: help demo test test-rust test-python lint docs bench bench-quick bench-rust bench-orbits bench-everything bench-spart bench-against certificate-campaign contact-campaign capture-campaign test-campaign fuzz soak test-ros2 test-peers notices clean
+.PHONY: help demo test test-rust test-python lint docs docs-publish bench bench-quick bench-rust bench-orbits bench-everything bench-spart bench-against certificate-campaign contact-campaign capture-campaign test-campaign fuzz soak test-ros2 test-peers notices wheel clean
 
 help: ## prints this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 16
@@ -29,6 +29,10 @@ $(VENV)/.tested: pyproject.toml | $(VENV)/.built
 
 notices: ## writes THIRD_PARTY_NOTICES.txt from the licences of the crates in the module
 	$(PYTHON) crates/py/notices.py
+
+wheel: $(BIN)/maturin ## builds wheel (manylinux_2_28) and source distribution into dist/, tests both in new environments
+	$(BIN)/python -m pip install --quiet 'maturin[zig]>=1.16,<2'
+	$(BIN)/python crates/py/check_distributions.py
 
 demo: $(VENV)/.built ## builds, runs the experiment of the paper, writes out/humanoid_reach
 	$(BIN)/onorbit run humanoid_reach --out out/humanoid_reach --force
@@ -55,6 +59,10 @@ $(VENV)/.documented: pyproject.toml | $(VENV)/.built
 
 docs: $(VENV)/.built $(VENV)/.documented ## builds the documentation with warnings as errors and checks its links
 	$(BIN)/python website/build.py
+
+# TO= folder of all versions, which can be served as it is
+docs-publish: docs ## adds the documentation to a folder with one website per version
+	$(BIN)/python website/publish.py '$(TO)'
 
 $(VENV)/.benched: pyproject.toml | $(VENV)/.tested
 	$(MATURIN) --extras bench

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 
 ROOT = Path(__file__).parents[1]
 
@@ -57,4 +58,13 @@ def test_licences_that_require_it_include_text_and_source() -> None:
 
 def test_the_wheel_contains_the_notices() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    assert {"LICENSE", script().NOTICES.name} <= set(project["license-files"])
+    files = {"LICENSE", "LICENSE-MIT", "LICENSE-APACHE", script().NOTICES.name}
+    assert files <= set(project["license-files"])
+    assert all((ROOT / file).stat().st_size > 100 for file in files)
+
+
+def test_the_citation_has_the_version_and_the_licences_of_the_package() -> None:
+    workspace = tomllib.loads((ROOT / "Cargo.toml").read_text())["workspace"]["package"]
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text())
+    assert citation["version"] == workspace["version"]
+    assert " OR ".join(citation["license"]) == workspace["license"]

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import importlib
 import importlib.util
+import json
 from pathlib import Path
+
+import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 spec = importlib.util.spec_from_file_location("links", ROOT / "website" / "links.py")
@@ -39,3 +43,19 @@ def test_errors_of_a_site_are_found(tmp_path: Path) -> None:
     }
     found, _ = site(tmp_path, " ".join(wrong))
     assert sorted(found) == sorted(f"index.html: {message}" for message in wrong.values())
+
+
+def test_versions_are_published_side_by_side(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(ROOT / "website")
+    publish = importlib.import_module("publish")
+    built, folder = tmp_path / "built", tmp_path / "all"
+    built.mkdir()
+    (built / "index.html").write_text("first")
+    for version in ("0.9", "0.10", "0.9"):
+        versions = publish.publish(built, folder, version)
+    assert versions == json.loads((folder / "versions.json").read_text()) == ["0.10", "0.9"]
+    assert "url=0.10/index.html" in (folder / "index.html").read_text()
+    (built / "index.html").write_text("corrected")
+    publish.publish(built, folder, "0.9")
+    assert (folder / "0.9" / "index.html").read_text() == "corrected"
+    assert (folder / "0.10" / "index.html").read_text() == "first"

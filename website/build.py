@@ -9,12 +9,10 @@ import re
 import shutil
 import subprocess
 import sys
-from pathlib import Path
 
-from links import problems
+from links import SITE, problems
 from sources import copy_sources
 
-SITE = Path("out/docs")
 PROGRESS = re.compile(r"Build started|Build finished in .*|No issues found|")
 
 

@@ -6,6 +6,8 @@ from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
+SITE = Path("out/docs")  # where the website is built
+
 LOADED = {("script", "src"), ("img", "src"), ("iframe", "src")}
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import logging
 import pickle
 import queue
@@ -22,6 +23,12 @@ if TYPE_CHECKING:
 
 LOCAL = "local"
 """Address of a cluster that is started on this machine, for the campaign only."""
+_SETTINGS = {
+    "distributed.worker.profile.enabled": False,  # samples the stacks of Python a hundred times a second
+    # replaces MALLOC_TRIM_THRESHOLD_, with which every case returns its memory and faults it in again
+    "distributed.nanny.pre-spawn-environ": {"OMP_NUM_THREADS": 1, "MALLOC_ARENA_MAX": 1},
+}
+"""Settings of Dask for a cluster on this machine."""
 _CONNECT_S = 10.0
 _WITHOUT_WORKERS_S = 60.0
 """Wall-clock time for which a campaign waits for the first worker, s."""
@@ -107,6 +114,7 @@ def _client(address: str, workers: int) -> Iterator[Any]:
     try:
         if address == LOCAL:
             with (
+                importlib.import_module("dask").config.set(_SETTINGS),
                 module.LocalCluster(
                     n_workers=workers,
                     threads_per_worker=1,
