@@ -102,8 +102,9 @@ def test_state_nested_too_deeply_is_rejected() -> None:
     deep: list[Any] = []
     for _ in range(100_000):
         deep = [deep]
-    with pytest.raises(ControlError, match="nested too deep"):
+    with pytest.raises(ControlError, match="nested too deep") as caught:
         encode(deep)
+    assert caught.value.__context__ is None, "programs that pickle the context could not pickle its traceback"
 
 
 def state_text(state: Any) -> bytes:

@@ -177,9 +177,19 @@ BODIES = {
         ("the package 'arm_description' was not found", "package_paths="),
     ),
     "missing file": ('<xacro:include filename="other.xacro"/>', ("'other.xacro'", "does not exist")),
-    "endless macro": ('<xacro:macro name="m"><xacro:m/></xacro:macro><xacro:m/>', ("nested too deeply",)),
-    "a file in itself": ('<xacro:include filename="$(dirname)/bad.xacro"/>', ("nested too deeply",)),
+    "endless macro": (
+        '<xacro:macro name="m"><xacro:m/></xacro:macro><xacro:m/>',
+        ("nested too deeply: the macro 'm' is nested in itself",),
+    ),
+    "a file in itself": (
+        '<xacro:include filename="$(dirname)/bad.xacro"/>',
+        ("nested too deeply: the file '$(dirname)/bad.xacro' is nested in itself",),
+    ),
     "deep": ("<a>" * 3000 + "</a>" * 3000, ("nested too deeply",)),
+    "deep macro": (
+        '<xacro:macro name="m">' + "<a>" * 300 + "</a>" * 300 + "</xacro:macro>"
+        + "<a>" * 100 + "<xacro:m/>" + "</a>" * 100, ("nested too deeply: in the macro 'm'",),
+    ),
     "no link": ("", ("no links",)),
     "macros alone": (
         '<xacro:macro name="m"><link name="a"/></xacro:macro>',
@@ -201,6 +211,32 @@ def test_expansion_errors_name_the_file(name: str, tmp_path: Path) -> None:
     file = tmp_path / "bad.xacro"
     file.write_text(HEAD + body + "</robot>")
     check(Bad(lambda: oo.Model.from_urdf(file), "ModelError", (str(file), *words), {"path": str(file)}))
+
+
+@needs_xacro
+@pytest.mark.parametrize("name", ["endless macro", "a file in itself", "deep", "deep macro"])
+def test_errors_of_nesting_have_no_context(name: str, tmp_path: Path) -> None:
+    """Dask registers functions that pickle the context of every error, which fails for a deep traceback."""
+    file = tmp_path / "bad.xacro"
+    file.write_text(HEAD + BODIES[name][0] + "</robot>")
+    with pytest.raises(oo.exceptions.ModelError) as caught:
+        oo.Model.from_urdf(file)
+    assert caught.value.__context__ is None
+    assert caught.value.__cause__ is None
+    assert len(caught.traceback) < 10
+
+
+@needs_xacro
+def test_a_macro_that_calls_itself_as_a_loop_is_expanded(tmp_path: Path) -> None:
+    file = tmp_path / "chain.xacro"
+    file.write_text(
+        HEAD
+        + '<xacro:macro name="part" params="n">' + LINK.format("a${n}", 1)
+        + '<xacro:if value="${n > 0}"><joint name="j${n}" type="fixed"><parent link="a${n}"/>'
+        '<child link="a${n-1}"/></joint><xacro:part n="${n-1}"/></xacro:if></xacro:macro>'
+        '<xacro:part n="60"/></robot>'
+    )  # fmt: skip
+    assert oo.Model.from_urdf(file).mass == 61.0
 
 
 @needs_xacro

@@ -8,7 +8,7 @@ import io
 import os
 import re
 import threading
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,16 +16,12 @@ from onorbit_rs.common import input_files
 from onorbit_rs.common.suggestions import did_you_mean
 from onorbit_rs.exceptions import ModelError, NotFoundError, ReadError
 from onorbit_rs.robots.functions import Work
+from onorbit_rs.robots.nesting import TOO_DEEP, NestingError
 from onorbit_rs.robots.wording import wording
 from onorbit_rs.robots.xacro_files import Environment, Files
 from onorbit_rs.robots.xacro_parts import replace_parts
 
 _LOCK = threading.Lock()  # xacro keeps its state in global variables
-
-_TOO_DEEP = (
-    "macros, includes or elements are nested too deeply; check for a macro that calls itself or a file that "
-    "includes itself"
-)
 
 
 def expand(
@@ -67,9 +63,8 @@ def expand(
     used: set[str] = set()
     remarks: list[str] = []
     output = io.StringIO()
-    with contextlib.redirect_stderr(output), _model_errors(file):
-        document = _process(xacro, file, package_paths, values, used, remarks)
-        text = document.documentElement.toxml()
+    with contextlib.redirect_stderr(output):
+        document, text = _expanded(xacro, file, package_paths, values, used, remarks)
     if not document.getElementsByTagName("link") and b"<xacro:macro" in file.read_bytes():
         raise ModelError(
             f"{file} defines xacro macros but no robot; give the file that calls the macros", path=str(file)
@@ -99,6 +94,33 @@ def _import_xacro(file: Path) -> Any:
         ) from error
 
 
+def _expanded(
+    xacro: Any,
+    file: Path,
+    package_paths: Sequence[str | os.PathLike[str]],
+    values: dict[str, str],
+    used: set[str],
+    remarks: list[str],
+) -> tuple[Any, str]:
+    """Return the expanded document and its text; convert errors to errors that name the file.
+
+    An error of nesting is raised after the block that handles it. Otherwise, it would be the context of the
+    error of this package, and programs that pickle contexts, among them Dask, cannot pickle its traceback.
+    """
+    try:
+        document = _process(xacro, file, package_paths, values, used, remarks)
+        return document, document.documentElement.toxml()
+    except OSError as error:
+        raise ReadError(
+            f"cannot read {file}: {error.strerror or error}", path=str(file), kind="robot"
+        ) from error
+    except Exception as error:  # raised by xacro, by expat, or by an expression in the file
+        reason = _reason(error)
+        if not _is_too_deep(error):
+            raise ModelError(f"{file}: {reason}", path=str(file)) from error
+    raise ModelError(f"{file}: {reason}", path=str(file))
+
+
 def _process(
     xacro: Any,
     file: Path,
@@ -113,21 +135,6 @@ def _process(
     with _LOCK, contextlib.ExitStack() as undo:
         replace_parts(xacro, undo, files, work, Environment(values, used), remarks)
         return xacro.process_file(str(file), mappings=_Arguments(values, used))
-
-
-@contextlib.contextmanager
-def _model_errors(file: Path) -> Iterator[None]:
-    """Convert errors in the block to errors of this package that name the file."""
-    try:
-        yield
-    except RecursionError:
-        raise ModelError(f"{file}: {_TOO_DEEP}", path=str(file)) from None
-    except OSError as error:
-        raise ReadError(
-            f"cannot read {file}: {error.strerror or error}", path=str(file), kind="robot"
-        ) from error
-    except Exception as error:  # raised by xacro, by expat, or by an expression in the file
-        raise ModelError(f"{file}: {_reason(error)}", path=str(file)) from error
 
 
 class _Arguments(dict[str, str]):
@@ -150,8 +157,8 @@ def _text(value: object) -> str:
 def _reason(error: Exception) -> str:
     """Return the message of an error in one line, without class names of xacro."""
     text = " ".join(str(error).split()) or type(error).__name__
-    if "maximum recursion depth" in text:
-        return _TOO_DEEP
+    if _is_too_deep(error):
+        return text if isinstance(error, NestingError) else TOO_DEEP
     undefined = re.search(r"Undefined substitution argument\s+(\S+)", text)
     if undefined:
         name = undefined[1]
@@ -165,6 +172,11 @@ def _reason(error: Exception) -> str:
     if not expressions:
         return reason
     return f"expression {', used in '.join(map(_shortened, expressions))}: {reason}"
+
+
+def _is_too_deep(error: Exception) -> bool:
+    """Return whether an error is due to nesting, or xacro raised another one with its message."""
+    return isinstance(error, RecursionError) or "maximum recursion depth" in str(error)
 
 
 def _shortened(text: str) -> str:

@@ -15,6 +15,7 @@ import yaml
 
 from onorbit_rs.robots.expressions import evaluate
 from onorbit_rs.robots.functions import FUNCTIONS, Work
+from onorbit_rs.robots.nesting import Nesting, check_depth
 from onorbit_rs.robots.wording import wording
 from onorbit_rs.robots.xacro_files import Environment, Files
 
@@ -48,7 +49,7 @@ def replace_parts(
     substitution = importlib.import_module("xacro.substitution_args")
     functions = FUNCTIONS | _file_functions(xacro, files, work)
     include, call = _without_extras(xacro, files, remarks)
-    evaluate_all, sizes = xacro.eval_all, _Sizes()
+    evaluate_all, parse, sizes, nesting = xacro.eval_all, xacro.parse, _Sizes(), Nesting()
 
     def safe_eval(text: str, symbols: Any, _: Any = None) -> Any:
         return evaluate(text, partial(_property, xacro.Table, symbols), functions, work)
@@ -62,13 +63,26 @@ def replace_parts(
 
     def counted_eval_all(node: Any, *others: Any) -> None:
         work.spend(25)
-        evaluate_all(node, *others)
+        with nesting.element():
+            evaluate_all(node, *others)
 
     def counted_call(node: Any, macros: Any, symbols: Any) -> Any:
         with contextlib.suppress(KeyError):  # not a macro
             _, _, macro = xacro.resolve_macro(node.tagName.removeprefix("xacro:"), macros, symbols)
             work.spend(5 * sizes.of(macro.body))  # the macro call copies its body
-        return call(node, macros, symbols)
+        if not node.tagName.startswith("xacro:"):
+            return call(node, macros, symbols)
+        with nesting.macro(node.tagName.removeprefix("xacro:")):
+            return call(node, macros, symbols)
+
+    def counted_include(node: Any, *others: Any) -> None:
+        with nesting.include(node.getAttribute("filename")):
+            include(node, *others)
+
+    def checked_parse(source: Any, filename: Any = None) -> Any:
+        document = parse(source, filename)
+        check_depth(document)
+        return document
 
     def folder_of(_: object) -> str:
         return str(Path(xacro.filestack[-1] or ".").absolute().parent)
@@ -82,7 +96,8 @@ def replace_parts(
     for owner, name, replacement in (
         (xacro, "safe_eval", safe_eval),
         (xacro, "eval_all", counted_eval_all),
-        (xacro, "process_include", include),
+        (xacro, "process_include", counted_include),
+        (xacro, "parse", checked_parse),
         (xacro, "handle_macro_call", counted_call),
         (substitution, "_eval", eval_argument),
         (substitution, "_eval_find", files.find),

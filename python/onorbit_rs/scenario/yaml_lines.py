@@ -6,6 +6,7 @@ Numbers and booleans follow YAML 1.2: ``1e-3`` is a number, ``on`` and ``12:30``
 from __future__ import annotations
 
 import re
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -64,15 +65,15 @@ def parse_yaml(text: str, file: Path | None) -> tuple[Any, Lines]:
     """
     reader = _NodeReader(file)
     try:
-        loader = _Loader(text)
-        root = loader.get_single_node()
-        data = reader.value(loader, root, ()) if root is not None else None
+        with suppress(RecursionError):  # not the context of the error below: programs may pickle it
+            loader = _Loader(text)
+            root = loader.get_single_node()
+            data = reader.value(loader, root, ()) if root is not None else None
+            return data, reader.lines
     except yaml.YAMLError as error:
         raise _syntax_error(error, file) from None
-    except RecursionError:
-        message = "lists and mappings are nested too deeply; a scenario requires fewer than ten levels"
-        raise _at(file, None, message) from None
-    return data, reader.lines
+    message = "lists and mappings are nested too deeply; a scenario requires fewer than ten levels"
+    raise _at(file, None, message)
 
 
 class _NodeReader:

@@ -10,6 +10,7 @@ import base64
 import json
 import math
 import re
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -32,11 +33,10 @@ def encode(state: object) -> bytes:
         If the state contains a value that is not plain data; the message names its location, its type and
         the allowed types.
     """
-    try:
+    with suppress(RecursionError):  # not the context of the error below: programs may pickle it
         data = {"format": _FORMAT, "state": _Encoder().encoded(state, "state")}
         return json.dumps(data, allow_nan=False).encode("ascii")
-    except RecursionError:
-        raise _refused("state", "is nested too deeply", state) from None
+    raise _refused("state", "is nested too deeply", state)
 
 
 def decode(text: bytes) -> Any:
