@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 import threading
@@ -14,6 +13,7 @@ from typing import Any
 import psutil
 import pytest
 from campaign_files import BODY, same, spin
+from killed_workers import check_killed_workers, number_of_cases
 
 import onorbit_rs as oo
 from onorbit_rs.exceptions import CampaignError, InputError
@@ -40,18 +40,6 @@ def listening() -> set[str]:
     return found
 
 
-def workers() -> list[psutil.Process]:
-    """Returns the processes that run tasks: the children of the cluster's processes."""
-    found = []
-    for process in psutil.Process().children(recursive=True):
-        try:
-            if "spawn_main" in " ".join(process.cmdline()):
-                found.append(process)
-        except psutil.Error:
-            continue
-    return found
-
-
 @pytest.fixture(scope="module")
 def cluster() -> Iterator[str]:
     with distributed.LocalCluster(
@@ -70,41 +58,13 @@ def test_a_cluster_gives_the_bits_of_threads(cluster: str, tmp_path: Path) -> No
 def test_killed_workers_lose_no_case_and_repeat_none(
     cluster: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """CASES= sets the number of cases; `make test-campaign` uses 1000."""
-    cases = int(os.environ.get("CASES", "20"))
-    campaign = spin(cases)
-    campaign["campaign"]["scenario"] = BODY | {"simulation": {"duration": 2.0, "time_step": 1e-3}}
     monkeypatch.setattr("onorbit_rs.campaigns.on_dask._BATCH_S", 0.05)
-    seen: list[int] = []
-    from onorbit_rs.campaigns import run as campaign_run
-
-    original = campaign_run.CampaignFolder.add
-
-    def add(self: Any, outcome: Any) -> None:
-        seen.append(outcome.case)
-        original(self, outcome)
-
-    monkeypatch.setattr(campaign_run.CampaignFolder, "add", add)
-    is_over, kills = threading.Event(), []
-
-    def kill() -> None:
-        while not is_over.wait(0.1) and len(kills) < max(2, cases // 40):
-            before = len(seen)
-            if before >= max(1, cases // 10) + (kills[-1] if kills else 0) and (found := workers()):
-                found[len(kills) % len(found)].kill()
-                kills.append(before)
-
-    killer = threading.Thread(target=kill)
-    killer.start()
-    try:
-        table = oo.campaign(campaign, tmp_path, cluster=cluster)
-    finally:
-        is_over.set()
-        killer.join()
-    print(f"{len(kills)} workers killed during {cases} cases")
-    assert len(kills) >= 2
-    assert sorted(seen) == list(range(cases)), "no case is lost, and none is recorded twice"
-    assert same(table).equals(same(oo.campaign(campaign)))
+    check_killed_workers(
+        tmp_path,
+        number_of_cases(20),
+        lambda campaign: oo.campaign(campaign, tmp_path / "out", cluster=cluster),
+        monkeypatch,
+    )
 
 
 def test_a_local_cluster_listens_on_this_machine_only(monkeypatch: pytest.MonkeyPatch) -> None:

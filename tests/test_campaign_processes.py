@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import os
-import random
 import signal
 import subprocess
 import sys
-import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -17,6 +14,7 @@ from typing import Any
 import psutil
 import pytest
 from campaign_files import BODY, campaign_of, same, spin, write
+from killed_workers import check_killed_workers, number_of_cases
 
 import onorbit_rs as oo
 from onorbit_rs.campaigns import run as campaign_run
@@ -113,41 +111,12 @@ def test_an_error_of_a_controller_is_kept(tmp_path: Path) -> None:
 
 
 def test_killed_workers_lose_no_case_and_repeat_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """CASES= sets the number of cases; `make test-campaign` uses 1000."""
-    cases = int(os.environ.get("CASES", "24"))
-    campaign = spin(cases)
-    campaign["campaign"]["scenario"] = BODY | {"simulation": {"duration": 2.0, "time_step": 1e-3}}
-    whole = oo.campaign(campaign)
-    seen: list[int] = []
-    original = campaign_run.CampaignFolder.add
-
-    def add(self: Any, outcome: Any) -> None:
-        seen.append(outcome.case)
-        original(self, outcome)
-
-    monkeypatch.setattr(campaign_run.CampaignFolder, "add", add)
-    is_over, kills = threading.Event(), []
-
-    def kill() -> None:
-        random_ = random.Random(1)
-        while not is_over.wait(random_.uniform(0.1, 0.6)):
-            before = len(seen)
-            if before >= max(1, cases // 40) + (kills[-1] if kills else 0) and (found := workers()):
-                random_.choice(found).kill()
-                kills.append(before)
-
-    killer = threading.Thread(target=kill)
-    killer.start()
-    try:
-        with in_processes(monkeypatch):
-            table = oo.campaign(campaign, tmp_path, workers=2)
-    finally:
-        is_over.set()
-        killer.join()
-    print(f"{len(kills)} workers killed during {cases} cases")
-    assert len(kills) >= 2
-    assert sorted(seen) == list(range(cases)), "no case is lost, and none is recorded twice"
-    assert same(table).equals(same(whole))
+    check_killed_workers(
+        tmp_path,
+        number_of_cases(24),
+        lambda campaign: oo.campaign(campaign, tmp_path / "out", workers=2),
+        monkeypatch,
+    )
 
 
 def test_a_killed_campaign_continues(tmp_path: Path) -> None:
