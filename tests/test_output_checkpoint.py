@@ -74,6 +74,8 @@ def rows_of(out: Path, column: str = "time") -> int:
 def assert_same_trace(out: Path, whole: oo.Run) -> None:
     with np.load(out / "trace.npz") as stored:
         assert set(stored.files) == {*whole.trace.columns(), *NAMES}
+        for name in NAMES:
+            assert stored[name].tolist() == list(getattr(whole.model, name)), name
         for name in whole.trace.columns():
             assert stored[name].tobytes() == np.asarray(getattr(whole.trace, name)).tobytes(), name
 

@@ -64,10 +64,30 @@ def test_a_header_that_claims_too_much_data_takes_no_memory(tmp_path: Path) -> N
     none = "not an array of real numbers or texts in the format that a run writes"
     for member, words in (
         (claims, none), (huge, "contains 24 bytes, but its shape"), (b"\x93NUMPY\x03\x00" + honest[8:], none),
-        (npy(np.array([{}])), none), (npy(np.array(["text"])), "it has no momentum"),
+        (npy(np.array([{}])), none), (npy(np.array(["text"])), "column 'time' has texts; expected numbers"),
         (b"", none), (b"no array", none), (honest[:-8], "contains 16 bytes, but its shape"),
     ):  # fmt: skip
         refused(tmp_path, npz(time=member), words)
+
+
+@pytest.mark.parametrize(
+    ("column", "array", "words"),
+    [
+        ("time", np.array(["0", "1", "2"]), "column 'time' has texts; expected numbers"),
+        ("q", np.array([["0"] * 7] * 3), "column 'q' has texts; expected numbers"),
+        ("joint_names", np.zeros(3), "column 'joint_names' has numbers; expected texts"),
+    ],
+)
+def test_texts_and_numbers_are_not_exchanged(
+    column: str, array: np.ndarray[Any, Any], words: str, tmp_path: Path
+) -> None:
+    whole = {
+        "time": np.arange(3.0),
+        "q": np.zeros((3, 7)),
+        "v": np.zeros((3, 6)),
+        "momentum": np.zeros((3, 6)),
+    }
+    refused(tmp_path, npz(**{name: npy(rows) for name, rows in (whole | {column: array}).items()}), words)
 
 
 def test_overlapping_columns_are_rejected(tmp_path: Path) -> None:

@@ -286,8 +286,7 @@ def test_all_cases_pass_within_a_minute_of_processor_time_with_json_output_only(
     before = processor_time_of_children()
     done = subprocess.run(command, capture_output=True, text=True, timeout=600, check=False)
     took = processor_time_of_children() - before
-    assert done.returncode == 0
-    assert all(line.startswith("onorbit: validate: ") for line in done.stderr.splitlines()), "only progress"
+    assert (done.returncode, done.stderr) == (0, "")
     verdicts = json.loads(done.stdout)
     assert len(verdicts) == len(CASES)
     for verdict in verdicts:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib
 import logging
-import pickle
 import queue
 import time
 import warnings
@@ -16,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from onorbit_rs.campaigns.cases import Outcome, run_case
 from onorbit_rs.campaigns.plan import Plan, software
 from onorbit_rs.campaigns.pool import MOST_DEATHS, Board
+from onorbit_rs.common.processes import packed, unpacked
 from onorbit_rs.exceptions import CampaignError, InputError
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ def run_cases(plan: bytes, cases: list[int]) -> tuple[list[Outcome], float]:
 @lru_cache(maxsize=4)
 def _plan(plan: bytes) -> Plan:
     warnings.simplefilter("ignore")  # the nominal scenario has issued them
-    loaded: Plan = pickle.loads(plan)
+    loaded: Plan = unpacked(plan)
     return loaded
 
 
@@ -151,7 +151,7 @@ class _Tasks:
 
     def __init__(self, client: Any, plan: Plan, cases: Sequence[int], address: str) -> None:
         self._client, self._address = client, address
-        self._plan = pickle.dumps(plan)
+        self._plan = packed(plan)
         self._done: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._running: dict[Any, list[int]] = {}
         self._threads = self._wait_for_workers()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pickle
 import signal
 import subprocess
 import sys
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from onorbit_rs.campaigns.cases import Outcome, Stopped
 from onorbit_rs.campaigns.pool import WorkerDied, pooled
+from onorbit_rs.common.processes import packed, receive, send
 
 if TYPE_CHECKING:
     from onorbit_rs.campaigns.plan import Plan
@@ -35,14 +35,13 @@ class _InProcess:
         assert process.stdin is not None
         assert process.stdout is not None
         try:
-            process.stdin.write(pickle.dumps(list(cases)))
-            process.stdin.flush()
+            send(process.stdin, list(cases))
             for _ in cases:
                 has_begun = False
-                pickle.load(process.stdout)  # the number of the case, when it begins
+                receive(process.stdout)  # the number of the case, when it begins
                 has_begun = True
-                yield pickle.load(process.stdout)
-        except (EOFError, OSError, ValueError, pickle.UnpicklingError) as error:
+                yield receive(process.stdout)
+        except (EOFError, OSError, ValueError) as error:
             raise WorkerDied(self._end(process), during_case=has_begun) from error
 
     def stop(self) -> None:
@@ -98,6 +97,6 @@ def on_processes(plan: Plan, cases: Sequence[int], workers: int) -> Iterator[Ite
 
     A worker that dies is replaced, and the cases that it had are run again.
     """
-    greeting = pickle.dumps((plan, sys.path))
+    greeting = packed((plan, sys.path))
     with pooled(cases, workers, lambda: _InProcess(greeting)) as outcomes:
         yield outcomes

@@ -8,7 +8,6 @@ process ends when its standard input is closed, which also happens if the proces
 from __future__ import annotations
 
 import os
-import pickle
 import queue
 import sys
 import threading
@@ -16,34 +15,30 @@ import warnings
 from typing import BinaryIO
 
 from onorbit_rs.campaigns.cases import run_case
+from onorbit_rs.common.processes import receive, send
 
 
 def main() -> None:
     """Run the cases that arrive on standard input."""
     results = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # output of user code must not mix with the results
-    plan, path = pickle.load(sys.stdin.buffer)
+    plan, path = receive(sys.stdin.buffer)
     sys.path[:] = path
     warnings.simplefilter("ignore")  # the nominal scenario has issued them
     requests: queue.SimpleQueue[list[int]] = queue.SimpleQueue()
     threading.Thread(target=_read, args=(sys.stdin.buffer, requests), daemon=True).start()
     while True:
         for case in requests.get():
-            _send(case, results)
-            _send(run_case(plan, case), results)
-
-
-def _send(message: object, stream: BinaryIO) -> None:
-    stream.write(pickle.dumps(message, protocol=pickle.HIGHEST_PROTOCOL))
-    stream.flush()
+            send(results, case)
+            send(results, run_case(plan, case))
 
 
 def _read(stream: BinaryIO, requests: queue.SimpleQueue[list[int]]) -> None:
     """Read requests until the stream is closed; then end the process, also during a case."""
     while True:
         try:
-            requests.put(pickle.load(stream))
-        except (EOFError, OSError, pickle.UnpicklingError):
+            requests.put(receive(stream))
+        except (EOFError, OSError):
             os._exit(0)
 
 

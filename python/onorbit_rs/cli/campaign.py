@@ -60,7 +60,7 @@ def campaign(
         from onorbit_rs.cli.run import report_run
 
         report_run(
-            lambda: campaign_case(campaign, case, out, cases=cases, force=force, quiet=quiet),
+            lambda: campaign_case(campaign, case, out, cases=cases, force=force, quiet=quiet or as_json),
             quiet=quiet,
             as_json=as_json,
         )
@@ -68,7 +68,7 @@ def campaign(
     from onorbit_rs.campaigns.run import campaign as run_campaign
 
     table = run_campaign(
-        campaign, out, cases=cases, workers=workers, cluster=cluster, force=force, quiet=quiet
+        campaign, out, cases=cases, workers=workers, cluster=cluster, force=force, quiet=quiet or as_json
     )
     with ignore_closed_pipe():
         if as_json:

@@ -52,7 +52,7 @@ def export(
             name="csv",
         )
     written: dict[str, Any] = {}
-    with parts_bar("export", quiet=quiet) as tell:
+    with parts_bar("export", quiet=quiet or as_json) as tell:
         for kind, file in _write_tables(folder, tables, system, tell):
             written[kind] = {"file": str(file), "bytes": file.stat().st_size}
         for kind, file in _write_bags(folder, mcap, bag, tell):

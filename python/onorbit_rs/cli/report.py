@@ -23,7 +23,7 @@ def report(
     from onorbit_rs.cli.console import print_json
     from onorbit_rs.common.progress import parts_bar
 
-    with parts_bar("report", quiet=quiet) as tell:
+    with parts_bar("report", quiet=quiet or as_json) as tell:
         from onorbit_rs.report import write_report
 
         page = write_report(folder, pdf=pdf, tell=tell)

@@ -62,7 +62,7 @@ def run(
             scenario,
             out,
             force=force,
-            quiet=quiet,
+            quiet=quiet or as_json,
             view=view,
             checkpoint_every=every,
             commands=commands,
@@ -94,7 +94,12 @@ def resume(
     every = CHECKPOINT_EVERY if checkpoint_every is None else checkpoint_every
     report_run(
         lambda: resume_run(
-            folder, quiet=quiet, view=view, checkpoint_every=every, figures=figures, recording=recording
+            folder,
+            quiet=quiet or as_json,
+            view=view,
+            checkpoint_every=every,
+            figures=figures,
+            recording=recording,
         ),
         quiet=quiet,
         as_json=as_json,

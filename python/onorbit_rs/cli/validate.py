@@ -43,7 +43,7 @@ def validate(
 
     cases = select(only or ())
     started = time.perf_counter()
-    verdicts = [case.not_run() for case in cases] if as_list else _run(cases)
+    verdicts = [case.not_run() for case in cases] if as_list else _run(cases, quiet=as_json)
     elapsed = time.perf_counter() - started
     with ignore_closed_pipe():
         if as_json:
@@ -57,11 +57,11 @@ def validate(
         raise typer.Exit(1)
 
 
-def _run(cases: Sequence[Case]) -> list[Verdict]:
-    """Run the cases, with a progress bar on a terminal."""
+def _run(cases: Sequence[Case], *, quiet: bool) -> list[Verdict]:
+    """Run the cases; show progress unless ``quiet``."""
     from onorbit_rs.common.progress import parts_bar
     from onorbit_rs.tools.validation import run
 
     done = itertools.count(1)
-    with parts_bar("validate", quiet=False) as tell:
+    with parts_bar("validate", quiet=quiet) as tell:
         return run(cases, each=lambda case: tell(case.name, next(done) / len(cases)))

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import pickle
 import sys
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
+from onorbit_rs.common.processes import receive
 from onorbit_rs.figures.drawings import Drawing, drawings
 from onorbit_rs.figures.save import as_bytes
 from onorbit_rs.figures.subject import Subject
@@ -27,15 +27,14 @@ def drawings_of(albums: Iterable[Album]) -> Iterator[tuple[str, Drawing]]:
 def main() -> None:
     """Read albums, then numbers of figures, from stdin; write each figure as PNG, preceded by its length.
 
-    The parent process is the only writer of stdin, so unpickling it is safe. The process ends at the end of
-    stdin, also if the parent was killed.
+    The process ends at the end of stdin, also if the parent was killed.
     """
-    albums = pickle.load(sys.stdin.buffer)
+    albums = receive(sys.stdin.buffer)
     found = [drawing for _, drawing in drawings_of(albums)]
     out = sys.stdout.buffer
     while True:
         try:
-            number = pickle.load(sys.stdin.buffer)
+            number = receive(sys.stdin.buffer)
         except EOFError:
             return
         content = as_bytes(found[number].draw(), "png")

@@ -20,7 +20,21 @@ def names_of(model: Model, prefix: str = "") -> dict[str, Any]:
 
 
 def split_names(arrays: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, list[str]]]:
-    """Return the columns of ``trace.npz``, and the names of joints and bodies by path."""
-    names = {path: [str(name) for name in rows] for path, rows in arrays.items()
-             if path.rpartition("/")[2] in NAMES and rows.dtype.kind == "U"}  # fmt: skip
-    return {path: rows for path, rows in arrays.items() if path not in names}, names
+    """Return the columns of ``trace.npz``, and the names of joints and bodies by path.
+
+    Raises
+    ------
+    ValueError
+        If an array of names contains numbers, or another one texts.
+    """
+    columns, names = {}, {}
+    for path, rows in arrays.items():
+        is_text, are_names = rows.dtype.kind == "U", path.rpartition("/")[2] in NAMES
+        if is_text != are_names:
+            kinds = ("numbers", "texts")
+            raise ValueError(f"column {path!r} has {kinds[is_text]}; expected {kinds[are_names]}")
+        if is_text:
+            names[path] = [str(name) for name in rows.flat]
+        else:
+            columns[path] = rows
+    return columns, names

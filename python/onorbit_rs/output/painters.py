@@ -5,13 +5,14 @@ second.
 from __future__ import annotations
 
 import os
-import pickle
 import subprocess
 import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any, NamedTuple
+
+from onorbit_rs.common.processes import send
 
 if TYPE_CHECKING:
     from onorbit_rs.figures import Subject, WorldSubject
@@ -136,11 +137,9 @@ def _serve(helper: subprocess.Popen[bytes], albums: Sequence[Album], queue: _Que
     assert helper.stdin is not None and helper.stdout is not None
     number = None
     try:
-        pickle.dump(list(albums), helper.stdin, protocol=pickle.HIGHEST_PROTOCOL)
-        helper.stdin.flush()
+        send(helper.stdin, list(albums))
         while (number := queue.take()) is not None:
-            pickle.dump(number, helper.stdin)
-            helper.stdin.flush()
+            send(helper.stdin, number)
             queue.contents[number] = _received(helper.stdout)
             number = None
     except Exception:
