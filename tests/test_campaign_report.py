@@ -115,13 +115,13 @@ def test_the_report_shows_success_sensitivities_and_reasons(tmp_path: Path) -> N
 
 
 def test_the_bundled_campaign_is_valid() -> None:
-    from onorbit_rs.campaigns import bundled
+    from onorbit_rs.campaigns.bundled import CAMPAIGNS
     from onorbit_rs.campaigns.load import load_campaign
     from onorbit_rs.campaigns.plan import plan_of
     from onorbit_rs.scenario.load import check
 
-    assert bundled.names() == ["capture_campaign"]
-    for name in bundled.names():
+    assert CAMPAIGNS.names() == ["capture_campaign"]
+    for name in CAMPAIGNS.names():
         plan = plan_of(load_campaign(name))
         check(plan.case(1).scenario, None, {})
         assert len(plan.value_names) == 13

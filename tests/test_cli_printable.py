@@ -17,7 +17,7 @@ from test_cli_terminal import on_terminal
 
 import onorbit_rs as oo
 from onorbit_rs import robots, scenarios
-from onorbit_rs.cli.list import description
+from onorbit_rs.cli.list import descriptions
 from onorbit_rs.common.printable import printable, shell_word
 from onorbit_rs.scenario import load
 
@@ -134,8 +134,8 @@ def test_a_narrow_terminal_cuts_neither_names_nor_numbers(words: tuple[str, ...]
 
 
 def test_the_list_shows_the_descriptions_of_the_scenarios() -> None:
-    for name in scenarios.names():
-        assert description(name) == load(name).description.strip()
+    shown = descriptions(scenarios.SCENARIOS)
+    assert shown == {name: load(name).description.strip() for name in scenarios.names()}
     assert robots.names()
 
 

@@ -16,6 +16,7 @@ from commands import SPIN, onorbit, refusal
 from test_cli import SHORT_REACH
 
 from onorbit_rs import robots, scenarios
+from onorbit_rs.campaigns.bundled import CAMPAIGNS
 from onorbit_rs.common import progress
 
 COLOR = re.compile(r"\x1b\[[0-9;]*3[0-9][0-9;]*m")
@@ -84,6 +85,8 @@ def test_json_of_list_and_check(reach: Path) -> None:
     listed = json.loads(onorbit("list", "--json").stdout)
     assert [entry["name"] for entry in listed["scenarios"]] == scenarios.names()
     assert all(entry["description"] for entry in listed["scenarios"])
+    assert [entry["name"] for entry in listed["campaigns"]] == CAMPAIGNS.names()
+    assert all(entry["description"] for entry in listed["campaigns"])
     assert listed["robots"] == robots.names()
     checked = json.loads(onorbit("check", reach, "--json").stdout)
     assert checked["ok"] is True

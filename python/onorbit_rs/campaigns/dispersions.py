@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -17,7 +18,7 @@ How = Literal["set", "add", "scale"]
 
 
 @dataclass(frozen=True)
-class Dispersion:
+class Dispersion(ABC):
     """A dispersed entry; ``names`` are the names of its values in the results.
 
     ``draws`` is the number of independent random numbers per case.
@@ -37,9 +38,9 @@ class Dispersion:
         """Names of the random numbers, from which they are derived."""
         return self.names
 
+    @abstractmethod
     def apply(self, data: dict[str, Any], us: Sequence[float]) -> tuple[Any, ...]:
         """Change the data of a case; return the dispersed values, in the order of ``names``."""
-        raise NotImplementedError
 
 
 def changed(how: How, nominal: float, drawn: float) -> float:

@@ -7,13 +7,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from onorbit_rs.campaigns import bundled
+from onorbit_rs.campaigns.bundled import CAMPAIGNS
 from onorbit_rs.campaigns.document import CampaignDocument
-from onorbit_rs.common.suggestions import did_you_mean
 from onorbit_rs.exceptions import DtypeError, NotFoundError
-from onorbit_rs.scenario.load import AnyScenario, check, locate
+from onorbit_rs.scenario.load import AnyScenario, check
 from onorbit_rs.scenario.locations import scenario_error
 from onorbit_rs.scenario.yaml_lines import Lines, read_yaml
+from onorbit_rs.scenarios import SCENARIOS
 
 
 class LoadedCampaign(NamedTuple):
@@ -45,22 +45,9 @@ def load_campaign(
             f"{source!s:.60} ({kind}) is not a campaign; give a bundled name, a YAML file or a mapping",
             name="campaign", got=kind, expected="str, path or mapping",
         )  # fmt: skip
-    file = _located(source)
+    file = CAMPAIGNS.locate(source)
     data, lines = read_yaml(file)
     return _checked(data, file, lines, cases)
-
-
-def _located(source: str | os.PathLike[str]) -> Path:
-    path = Path(source)
-    if path.exists() and os.fspath(source):
-        return path
-    name = os.fspath(source)
-    if name in bundled.names():
-        return bundled.path(name)
-    hint = did_you_mean(path.stem, bundled.names())
-    raise NotFoundError(
-        f"no such campaign: {name!r} is neither a file nor a bundled name{hint}", path=name, kind="campaign"
-    )
 
 
 def _checked(data: Any, file: Path | None, lines: Lines, cases: int | None) -> LoadedCampaign:
@@ -83,7 +70,7 @@ def _scenario(document: CampaignDocument) -> AnyScenario:
         return check(source if "name" in source else source | {"name": document.name}, file, inner)
     relative = (file.parent if file is not None else Path()) / source
     try:
-        found = relative if relative.is_file() else locate(source)
+        found = relative if relative.is_file() else SCENARIOS.locate(source)
     except NotFoundError as error:
         at = ("campaign", "scenario")
         raise scenario_error(str(error), file, document.lines.get(at), "campaign.scenario") from None

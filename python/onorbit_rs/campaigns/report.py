@@ -18,7 +18,7 @@ from onorbit_rs.campaigns.statistics import (
 )
 from onorbit_rs.campaigns.storage import CAMPAIGN, REPORT
 from onorbit_rs.report.campaign_page import HtmlTable, campaign_page
-from onorbit_rs.report.page import Picture
+from onorbit_rs.report.template import Picture, Verdict
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -59,7 +59,6 @@ def write_report(
         name=document.name,
         description=document.description,
         verdict=_verdict(columns, is_success),
-        remarks=[],
         numbers=[_percentiles(found), _sensitivities(ranked, found, len(is_success))],
         cases=[*_failures(columns, is_success, document.campaign.success), _worst(shown)],
         pictures=list(_pictures(shown, values, ranked, outcomes, is_success)),
@@ -70,7 +69,7 @@ def write_report(
     folder.write(REPORT, content.encode())
 
 
-def _verdict(columns: dict[str, list[Any]], is_success: NDArray[np.bool_]) -> tuple[str, str, str]:
+def _verdict(columns: dict[str, list[Any]], is_success: NDArray[np.bool_]) -> Verdict:
     rate = wilson(int(is_success.sum()), len(is_success))
     status = {name: columns["status"].count(name) for name in dict.fromkeys(sorted(columns["status"]))}
     kind = "passed" if is_success.all() else "warned" if is_success.any() else "failed"
@@ -80,7 +79,7 @@ def _verdict(columns: dict[str, list[Any]], is_success: NDArray[np.bool_]) -> tu
         f"With {CONFIDENCE:.0%} confidence, the probability of success is between {rate.low:.1%} and "
         f"{rate.high:.1%} (Wilson). Cases: {listed}."
     )
-    return kind, heading, text
+    return Verdict(kind, heading, text)
 
 
 def _percentiles(found: Sequence[Result]) -> HtmlTable:

@@ -15,9 +15,9 @@ def scenario_names(incomplete: str) -> list[str]:
 
 def campaign_names(incomplete: str) -> list[str]:
     """Return the bundled campaigns and the YAML files whose names begin with ``incomplete``."""
-    from onorbit_rs.campaigns import bundled
+    from onorbit_rs.campaigns.bundled import CAMPAIGNS
 
-    return [*_fitting(bundled.names(), incomplete), *_files(incomplete, (".yaml", ".yml"))]
+    return [*_fitting(CAMPAIGNS.names(), incomplete), *_files(incomplete, (".yaml", ".yml"))]
 
 
 def robot_names(incomplete: str) -> list[str]:

@@ -2,39 +2,64 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
+from typing import NamedTuple
 
 from onorbit_rs.common.suggestions import did_you_mean, nearest
 from onorbit_rs.exceptions import NotFoundError
 
 
-def names(folder: Path, ending: str) -> list[str]:
-    """Return the sorted names, without ``ending``, of the files in ``folder`` that end in ``ending``."""
-    return sorted(file.stem for file in folder.glob(f"*{ending}"))
+class BundledFiles(NamedTuple):
+    """Files of one kind in a folder of the package.
 
-
-def path(name: str, kind: str, folder: Path, ending: str) -> Path:
-    """Return the path of a bundled file.
-
-    Parameters
-    ----------
-    name : str
-        Name without its ending.
-    kind : str
-        Kind of the file, such as ``robot``, for messages.
-    folder : path
-        Folder of the package that contains the files.
-    ending : str
-        Ending of the file names, such as ``.yaml``.
-
-    Raises
-    ------
-    NotFoundError
-        If there is no such file; suggests the nearest name.
+    ``kind`` is the word for them in messages, such as ``robot``, and ``ending`` is that of their names.
     """
-    known = names(folder, ending)
-    if name not in known:
-        hint = did_you_mean(name, known) or "; onorbit list prints the names"
-        message = f"no bundled {kind} is named {name!r}{hint}"
-        raise NotFoundError(message, path=name, kind=kind, suggestion=nearest(name, known))
-    return folder / f"{name}{ending}"
+
+    kind: str
+    folder: Path
+    ending: str
+
+    def names(self) -> list[str]:
+        """Return the sorted names, without the ending."""
+        return sorted(file.stem for file in self.folder.glob(f"*{self.ending}"))
+
+    def path(self, name: str) -> Path:
+        """Return the path of a bundled file.
+
+        Raises
+        ------
+        NotFoundError
+            If there is no such file; suggests the nearest name.
+        """
+        known = self.names()
+        if name not in known:
+            hint = did_you_mean(name, known) or "; onorbit list prints the names"
+            message = f"no bundled {self.kind} is named {name!r}{hint}"
+            raise NotFoundError(message, path=name, kind=self.kind, suggestion=nearest(name, known))
+        return self.folder / f"{name}{self.ending}"
+
+    def locate(self, source: str | os.PathLike[str]) -> Path:
+        """Return the file of a bundled name or a path; a file in the working folder has precedence.
+
+        Raises
+        ------
+        NotFoundError
+            If there is no such file and no such name; suggests the nearest name.
+        """
+        name, known = os.fspath(source), self.names()
+        if not name:
+            raise NotFoundError(
+                f"the name of the {self.kind} is empty; give a bundled name or a YAML file",
+                path="", kind=self.kind,
+            )  # fmt: skip
+        path = Path(name)
+        if path.is_file() or (path.exists() and path.name not in known):
+            return path
+        if name in known:
+            return self.path(name)
+        hint = did_you_mean(path.stem, known) or "; onorbit list prints the bundled names"
+        raise NotFoundError(
+            f"no such {self.kind}: {name!r} is neither a file nor a bundled name{hint}",
+            path=name, kind=self.kind,
+        )  # fmt: skip

@@ -13,10 +13,10 @@ from onorbit_rs.figures.subject import Subject
 from onorbit_rs.figures.world_drawings import world_drawings
 
 if TYPE_CHECKING:
-    from onorbit_rs.output.painters import Album
+    from onorbit_rs.figures.world_subject import WorldSubject
 
 
-def drawings_of(albums: Iterable[Album]) -> Iterator[tuple[str, Drawing]]:
+def drawings_of(albums: Iterable[tuple[str, Subject | WorldSubject]]) -> Iterator[tuple[str, Drawing]]:
     """Yield the stem of the file name and the drawing of each figure of the albums."""
     for prefix, subject in albums:
         found = drawings(subject) if isinstance(subject, Subject) else world_drawings(subject)

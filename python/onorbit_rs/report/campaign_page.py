@@ -1,18 +1,15 @@
-"""The report page of a campaign: an HTML template that is filled with escaped text."""
+"""The report page of a campaign."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from html import escape
-from pathlib import Path
-from string import Template
 from typing import Any, NamedTuple
 
 from onorbit_rs.common.display_units import digits
 from onorbit_rs.common.printable import printable
-from onorbit_rs.report.page import Picture, figure_html
-
-_TEMPLATE = Path(__file__).with_name("campaign.html")
+from onorbit_rs.report import template
+from onorbit_rs.report.template import Picture, Verdict, figure_html
 
 
 class HtmlTable(NamedTuple):
@@ -28,8 +25,7 @@ def campaign_page(
     *,
     name: str,
     description: str,
-    verdict: tuple[str, str, str],
-    remarks: Sequence[str],
+    verdict: Verdict,
     numbers: Sequence[HtmlTable],
     cases: Sequence[HtmlTable],
     pictures: Sequence[Picture],
@@ -39,27 +35,21 @@ def campaign_page(
 ) -> str:
     """Return the HTML of the report of a campaign, without references to other files.
 
-    ``verdict`` is the kind (``passed``, ``warned``, ``failed``), the heading and the text of the verdict;
     ``numbers`` are the tables before the figures, and ``cases`` those after them.
     """
-    kind, heading, text = verdict
-    items = "".join(f"<li>{escape(remark)}</li>" for remark in remarks)
-    return Template(_TEMPLATE.read_text(encoding="utf-8")).substitute(
-        title=escape(f"{printable(name)}: onorbit campaign"),
-        name=escape(printable(name)),
-        description=escape(description),
-        verdict=f'<div class="verdict {kind}" id="verdict"><strong>{escape(heading)}</strong>'
-        f"<p>{escape(text)}</p></div>",
-        remarks=f'<div class="verdict warned" id="warnings"><strong>Warnings</strong><ul>{items}</ul></div>'
-        if items
-        else "",
+    return template.filled(
+        name=name,
+        what="onorbit campaign",
+        description=description,
+        verdict=verdict,
+        warnings=(),
         numbers="\n".join(map(_table, numbers)),
         figures="\n".join(map(figure_html, pictures)) or "<p>No result varies.</p>",
         cases="\n".join(map(_table, cases)),
-        scenario=escape(campaign),
-        again=escape(again),
-        version=escape(version),
-        footer=escape(f"Written by onorbit_rs {version}."),
+        source="Campaign",
+        text=campaign,
+        again=again,
+        version=version,
     )
 
 

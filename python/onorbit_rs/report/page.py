@@ -1,35 +1,26 @@
-"""The report page: an HTML template that is filled with escaped text."""
+"""The report page of a run: its verdict, numbers, certificate, figures and scenario."""
 
 from __future__ import annotations
 
-import base64
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
-from pathlib import Path
-from string import Template
 from typing import Any
 
 from onorbit_rs.common.display_units import digits
-from onorbit_rs.common.printable import printable
 from onorbit_rs.output.checks import Check, advice, checks, is_incomplete
 from onorbit_rs.output.summary_labels import EXCEEDED
+from onorbit_rs.report import template
 from onorbit_rs.report.numbers import Row, groups
+from onorbit_rs.report.template import Picture, Verdict, figure_html
 
-_TEMPLATE = Path(__file__).with_name("page.html")
 _VERDICTS = {True: ("passed", "holds"), False: ("failed", "BROKEN"), None: ("faint", "not evaluated")}
-_TYPES = {"svg": "image/svg+xml", "png": "image/png"}
-
-
-@dataclass(frozen=True)
-class Picture:
-    """A drawn figure; ``kind`` is svg or png."""
-
-    name: str
-    caption: str
-    kind: str
-    content: bytes
-    is_wide: bool
+_CERTIFICATE = """
+<h2>Certificate</h2>
+<p class="faint">What must stay where nothing acts, and what must agree, worked out from the trace apart from
+the integrator; relative values are shares of the run's own scales (momentum, energy, inertial forces). A
+check holds where its value is at most its gate.</p>
+"""
 
 
 @dataclass(frozen=True)
@@ -71,20 +62,18 @@ def filled(
     version: str,
 ) -> str:
     """Return the template filled with the parts of a page; user-defined texts are escaped."""
-    name = printable(summary.get("scenario") or "run")
-    return Template(_TEMPLATE.read_text(encoding="utf-8")).substitute(
-        title=escape(f"{name}: onorbit report"),
-        name=escape(name),
-        description=escape(description),
+    return template.filled(
+        name=summary.get("scenario") or "run",
+        what="onorbit report",
+        description=description,
         verdict=_verdict(summary),
-        remarks=_remarks([*warnings, *remarks]),
-        numbers=content.numbers,
-        checks=content.checks,
+        warnings=[*warnings, *remarks],
+        numbers=f"{content.numbers}{_CERTIFICATE}{content.checks}",
         figures=content.figures or "<p>This run has no figures.</p>",
-        scenario=escape(scenario),
-        again=escape(again),
-        version=escape(version),
-        footer=escape(f"Written by onorbit_rs {version}."),
+        source="Scenario",
+        text=scenario,
+        again=again,
+        version=version,
     )
 
 
@@ -94,7 +83,7 @@ def numbers_section(title: str, found: Sequence[tuple[str, Sequence[Row]]]) -> s
     return f'<h2>{escape(title)}</h2>\n<div class="tables">\n{tables}\n</div>'
 
 
-def _verdict(summary: dict[str, Any]) -> str:
+def _verdict(summary: dict[str, Any]) -> Verdict:
     """Return the verdict: passed, failed or incomplete, and whether the run reached its end."""
     status = str(summary.get("status") or "unknown")
     is_whole = status == "complete"
@@ -117,8 +106,7 @@ def _verdict(summary: dict[str, Any]) -> str:
         certificate, kind = f"Certificate FAILED: {broken}", "failed"
         if is_whole and (words := advice(summary)):
             text += f". {words[0].upper()}{words[1:]}"
-    lines = f"<strong>{escape(certificate)}</strong><p>{escape(text)}.</p>"
-    return f'<div class="verdict {kind}" id="verdict">{lines}</div>'
+    return Verdict(kind, certificate, f"{text}.")
 
 
 def warnings_of(summary: dict[str, Any]) -> list[str]:
@@ -127,16 +115,6 @@ def warnings_of(summary: dict[str, Any]) -> list[str]:
         *str(summary.get("warnings") or "").splitlines(),
         *(f"{what} were exceeded: {summary[key]}" for key, what in EXCEEDED.items() if summary.get(key)),
     ]
-
-
-def _remarks(texts: Sequence[str]) -> str:
-    """Return a list of warnings, such as remarks on omitted parts of the page, as HTML."""
-    items = "".join(f"<li>{escape(text)}</li>" for text in texts)
-    return (
-        f'<div class="verdict warned" id="warnings"><strong>Warnings</strong><ul>{items}</ul></div>'
-        if items
-        else ""
-    )
 
 
 def _table(title: str, rows: Sequence[Row]) -> str:
@@ -174,16 +152,4 @@ def _check(check: Check) -> str:
     return (
         f'<tr><td>{escape(check.name)}</td><td class="number">{value}</td><td class="number">{gate}</td>'
         f'<td class="unit">{escape(check.unit)}</td><td class="{kind}">{verdict}</td></tr>'
-    )
-
-
-def figure_html(picture: Picture) -> str:
-    """Return an embedded figure with its caption."""
-    content = base64.b64encode(picture.content).decode("ascii")
-    name, caption = escape(picture.name), escape(picture.caption)
-    kind = ' class="wide"' if picture.is_wide else ""
-    source = f"data:{_TYPES[picture.kind]};base64,{content}"
-    return (
-        f'<figure id="figure-{name}"{kind}><div class="scroll"><img alt="{caption}" src="{source}"></div>'
-        f"<figcaption>{caption} <code>{name}</code></figcaption></figure>"
     )

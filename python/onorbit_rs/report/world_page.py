@@ -11,14 +11,13 @@ from onorbit_rs.output.checks import checks, world_checks
 from onorbit_rs.report.numbers import Row, groups, row
 from onorbit_rs.report.page import (
     Content,
-    Picture,
     checks_table,
     data_html,
-    figure_html,
     filled,
     numbers_section,
     warnings_of,
 )
+from onorbit_rs.report.template import Picture, figure_html
 
 _PARTS = ("events", "contacts", "systems", "certificate")
 """Entries of the summary of a world that are shown outside the tables of numbers."""

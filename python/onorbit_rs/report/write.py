@@ -13,8 +13,9 @@ from onorbit_rs.output.folder import OutputFolder
 from onorbit_rs.output.manifest import FIGURES, REPORT
 from onorbit_rs.output.read import SavedRun, read_summary
 from onorbit_rs.output.replacement import Replacement
-from onorbit_rs.report.page import Picture, page
+from onorbit_rs.report.page import page
 from onorbit_rs.report.subjects import figures_of, subject_of_run, world_figures
+from onorbit_rs.report.template import Picture
 from onorbit_rs.report.world_page import world_page
 from onorbit_rs.scenario import WorldScenario
 

@@ -7,17 +7,17 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from onorbit_rs.common import bundled_files
+from onorbit_rs.common.bundled_files import BundledFiles
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Model
 
-_FOLDER = Path(__file__).parent
+_ROBOTS = BundledFiles("robot", Path(__file__).parent, ".urdf")
 
 
 def names() -> list[str]:
     """Return the names of the bundled robots, for :func:`load` and the key ``robot`` of scenarios."""
-    return bundled_files.names(_FOLDER, ".urdf")
+    return _ROBOTS.names()
 
 
 def path(name: str) -> Path:
@@ -28,7 +28,7 @@ def path(name: str) -> Path:
     NotFoundError
         If no bundled robot has this name; the message suggests the nearest name.
     """
-    return bundled_files.path(name, "robot", _FOLDER, ".urdf")
+    return _ROBOTS.path(name)
 
 
 def load(

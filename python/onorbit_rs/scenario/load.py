@@ -7,14 +7,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from onorbit_rs import scenarios
-from onorbit_rs.common.suggestions import did_you_mean
-from onorbit_rs.exceptions import DtypeError, NotFoundError, ScenarioError
+from onorbit_rs.exceptions import DtypeError, ScenarioError
 from onorbit_rs.scenario.changes import Changes, changed, misspelt
 from onorbit_rs.scenario.locations import scenario_error
 from onorbit_rs.scenario.schema import Scenario
 from onorbit_rs.scenario.world import WorldScenario
 from onorbit_rs.scenario.yaml_lines import Lines, read_yaml
+from onorbit_rs.scenarios import SCENARIOS
 
 AnyScenario = Scenario | WorldScenario
 
@@ -66,7 +65,7 @@ def load(
             "Scenario",
             name="scenario", got=kind, expected="str, path, mapping or Scenario",
         )  # fmt: skip
-    file = locate(source)
+    file = SCENARIOS.locate(source)
     data, lines = read_yaml(file)
     return _checked_changes(data, file, lines, changes)
 
@@ -84,30 +83,6 @@ def _checked_changes(data: Any, file: Path | None, lines: Lines, changes: Change
         if hint and len(error.errors) <= 1 and "did you mean" not in error.message:
             error.message += hint
         raise
-
-
-def locate(source: str | os.PathLike[str]) -> Path:
-    """Return the YAML file of a bundled name or a path; a file in the working folder has precedence.
-
-    Raises
-    ------
-    NotFoundError
-        If there is no such file and no such bundled scenario; suggests the nearest name.
-    """
-    if not os.fspath(source):
-        raise NotFoundError(
-            "the name of the scenario is empty; give a bundled name or a YAML file", path="", kind="scenario"
-        )
-    path = Path(source)
-    if path.is_file() or (path.exists() and path.name not in scenarios.names()):
-        return path
-    name = os.fspath(source)
-    if name in scenarios.names():
-        return scenarios.path(name)
-    hint = did_you_mean(path.stem, scenarios.names()) or "; onorbit list prints the bundled names"
-    raise NotFoundError(
-        f"no such scenario: {name!r} is neither a file nor a bundled name{hint}", path=name, kind="scenario"
-    )
 
 
 def check(data: Any, file: Path | None, lines: Lines) -> AnyScenario:

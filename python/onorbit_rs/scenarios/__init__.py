@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from onorbit_rs.common import bundled_files
+from onorbit_rs.common.bundled_files import BundledFiles
 
-_FOLDER = Path(__file__).parent
+SCENARIOS = BundledFiles("scenario", Path(__file__).parent, ".yaml")
+"""Scenarios for ``onorbit run`` and :func:`onorbit_rs.run`."""
 
 
 def names() -> list[str]:
     """Return the names of the bundled scenarios, for ``onorbit run`` and :func:`onorbit_rs.run`."""
-    return bundled_files.names(_FOLDER, ".yaml")
+    return SCENARIOS.names()
 
 
 def files_of(name: str) -> list[Path]:
@@ -23,7 +24,7 @@ def files_of(name: str) -> list[Path]:
         As for :func:`path`.
     """
     text = path(name).read_text(encoding="utf-8")
-    return [file for file in sorted(_FOLDER.glob("*.py")) if f"file: {file.name}" in text]
+    return [file for file in sorted(SCENARIOS.folder.glob("*.py")) if f"file: {file.name}" in text]
 
 
 def path(name: str) -> Path:
@@ -34,4 +35,4 @@ def path(name: str) -> Path:
     NotFoundError
         If no bundled scenario has this name; the message suggests the nearest name.
     """
-    return bundled_files.path(name, "scenario", _FOLDER, ".yaml")
+    return SCENARIOS.path(name)
