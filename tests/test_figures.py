@@ -20,10 +20,10 @@ from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 import onorbit_rs as oo
 from onorbit_rs import figures
 from onorbit_rs.common.display_units import with_prefix
-from onorbit_rs.figures.solids import robot_polygons
 from onorbit_rs.figures.style import MOST_POINTS, thin
 from onorbit_rs.output.read import SavedTrace
 from onorbit_rs.scenario import Scenario, load
+from onorbit_rs.visuals.solids import robot_polygons
 
 
 @pytest.fixture(scope="module")

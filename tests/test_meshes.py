@@ -28,7 +28,7 @@ from mesh_files import (
 )
 
 import onorbit_rs as oo
-from onorbit_rs.figures.coarse import coarse
+from onorbit_rs.visuals.coarse import coarse
 from onorbit_rs.visuals.meshes import Mesh, read_mesh
 from onorbit_rs.visuals.meshes.assemble import MOST_TRIANGLES
 from onorbit_rs.visuals.shapes import missing_meshes, shapes

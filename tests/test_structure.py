@@ -178,6 +178,7 @@ def test_the_scan_reads_every_way_to_import(tmp_path: Path) -> None:
 
 ELSEWHERE = {
     ("mujoco", "tools/validation"): "an independent oracle: it shares no code with the engine that it checks",
+    ("PIL", "pictures"): "writes pictures, and the letters in them; meshes only read textures",
 }
 
 

@@ -14,7 +14,6 @@ import onorbit_rs as oo
 from onorbit_rs import viewer
 from onorbit_rs.viewer.blueprint import playback_speed
 from onorbit_rs.viewer.contact_marks import COLOR, HELD, HELD_FOR, marks_of
-from onorbit_rs.viewer.screen import show_collisions
 from onorbit_rs.visuals.convex_hull import PRECISION, convex_hull
 
 
@@ -91,26 +90,6 @@ def test_collision_shapes_are_recorded_in_the_frames_of_their_links(recorded: tu
     assert entity in static
     assert column(path, entity, "CoordinateFrame:frame", static=True) == [["still/robot/body"]]
     assert column(path, entity, "Ellipsoids3D:half_sizes", static=True)[0][0] == pytest.approx([0.1] * 3)
-
-
-def test_hidden_collision_shapes_are_shown_on_request() -> None:
-    hidden: dict[str, Any] = {"EntityBehavior": {"visible": False}}
-    layout = {
-        "/view/1/ViewContents/overrides/world/still/collision/visualizers": hidden,
-        "/view/1/ViewContents/overrides/world/axes": {"EntityBehavior": {"visible": False}},
-    }
-    sent = []
-
-    class Client:
-        def get_blueprint(self, of: str) -> Any:
-            return type("Blueprint", (), {"blueprint": layout})
-
-        def set_blueprint(self, blueprint: Any, of: str) -> None:
-            sent.append(blueprint)
-
-    show_collisions(Client())  # type: ignore[arg-type]
-    first, second = (row["EntityBehavior"]["visible"] for row in sent[0].values())
-    assert first and not second
 
 
 def test_a_run_without_contacts_has_no_marks(tmp_path: Path) -> None:

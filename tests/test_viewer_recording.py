@@ -49,7 +49,7 @@ def recording(reach: tuple[Built, oo.Trace], tmp_path_factory: pytest.TempPathFa
 
 def test_every_entity_has_every_step(reach: tuple[Built, oo.Trace], recording: Path) -> None:
     moving, static = rows_by_entity(recording)
-    frames = {f"/frames/{name}" for name in ("L", "follow", "compass", "desired")}
+    frames = {f"/frames/{name}" for name in ("L", "follow", "compass", "base_axes", "desired")}
     plots = {
         "joint_torque", "joint_position", "joint_rate", "tool_position_error", "tool_attitude_error",
         "linear_momentum", "angular_momentum", "energy", "base_position", "base_rate", "base_attitude",

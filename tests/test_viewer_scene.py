@@ -17,10 +17,10 @@ from onorbit_rs.common.display_units import amount, round_up
 from onorbit_rs.common.rotations import local_orbital_axes
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import build
-from onorbit_rs.viewer.land import land, world_map
 from onorbit_rs.viewer.planet import to_eye
 from onorbit_rs.viewer.trace_rows import TraceRows
 from onorbit_rs.visuals.earth_shape import is_earth
+from onorbit_rs.visuals.land import centers, land, land_fraction, world_map
 
 EPOCH = "2026-03-20 12:00:00 UTC"
 ORBIT = {"semi_major_axis": "6878 km", "inclination": "97 deg"}
@@ -113,19 +113,19 @@ def test_every_number_has_a_scale() -> None:
 
 
 def test_the_map_has_land_at_the_right_places() -> None:
-    area = np.cos(np.radians(89.0 - 2.0 * np.arange(90)))
+    area = np.cos(np.radians(centers()[0]))
     share = (land().mean(axis=1) * area).sum() / area.sum()
     assert abs(share - 0.291) < 0.01  # fraction of the Earth's surface (CIA World Factbook: 29.1 %)
     places = {(52, 21): True, (0, 25): True, (-25, 135): True, (40, -100): True, (-85, 0): True}
     places |= {(0, -30): False, (0, -150): False, (-40, 90): False, (40, 170): False}
     for (latitude, longitude), expected in places.items():
-        assert land()[int((90 - latitude) // 2), int((longitude + 180) // 2)] == expected, (
-            latitude,
-            longitude,
-        )
-    colors = world_map(True, times=1, grid_deg=400.0)
-    assert colors.shape == (90, 180, 3)
-    warsaw, pacific = colors[19, 100], colors[45, 15]
+        row, column = int(2 * (90 - latitude)), int(2 * (longitude + 180))
+        assert land()[row, column] == expected, (latitude, longitude)
+        share_at = land_fraction(np.array([latitude], float), np.array([longitude], float))
+        assert (share_at[0] > 0.5) == expected, (latitude, longitude)
+    colors = world_map(True, grid_deg=400.0)
+    assert colors.shape == (360, 720, 3)
+    warsaw, pacific = colors[76, 402], colors[180, 60]
     assert warsaw[1] > warsaw[2] and pacific[2] > pacific[1]  # green, blue
 
 

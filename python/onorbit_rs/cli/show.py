@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import Annotated
 
@@ -11,6 +10,7 @@ import typer
 from onorbit_rs.cli.exit_codes import ignore_closed_pipe
 from onorbit_rs.cli.options import FolderArgument, JsonOption
 from onorbit_rs.cli.output_files import check_output_file
+from onorbit_rs.cli.picture import View, save_picture
 from onorbit_rs.cli.text_output import print_line
 from onorbit_rs.common.printable import shell_word
 from onorbit_rs.exceptions import InputError
@@ -19,19 +19,31 @@ from onorbit_rs.exceptions import InputError
 def show(
     folder: FolderArgument,
     viewer: Annotated[bool, typer.Option(help="Open the recording if a display is available.")] = True,
-    picture: Annotated[Path | None, typer.Option(metavar="FILE", help="Save a PNG of the viewer.")] = None,
+    picture: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Draw the scene as PNG; needs no screen.")
+    ] = None,
     at: Annotated[
         float | None, typer.Option(metavar="SECONDS", help="Time of the picture; default: 0.")
     ] = None,
+    size: Annotated[
+        str | None, typer.Option(metavar="WIDTHxHEIGHT", help="Pixels of the picture; default: 1920x1080.")
+    ] = None,
+    eye: Annotated[
+        str | None, typer.Option(metavar="X,Y,Z", help="Camera relative to the base, m, axes of L or W.")
+    ] = None,
+    look_at: Annotated[
+        str | None, typer.Option(metavar="X,Y,Z", help="Middle of the picture, in the same axes, m.")
+    ] = None,
     collision: Annotated[
-        bool, typer.Option("--collision", help="Show the collision shapes in the picture.")
+        bool, typer.Option("--collision", help="Draw the collision shapes in the picture.")
     ] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing picture.")] = False,
     as_json: JsonOption = False,
 ) -> None:
     """Print a run's summary and open its recording.
 
-    With --picture, save a picture of the recording instead of opening it.
+    With --picture, draw the scene at a time of the run instead of opening the recording. The axes of --eye
+    and --look-at are those of L (x away from the Earth, y along the track), or of W without an orbit.
     """
     from onorbit_rs.cli.console import print_json
     from onorbit_rs.cli.summary import print_summary
@@ -44,19 +56,14 @@ def show(
             f"--picture {picture} must end in .png, the only supported format",
             name="picture", got=picture.suffix, expected=".png",
         )  # fmt: skip
-    if at is not None and picture is None:
-        raise InputError(f"--at {at:g} sets the time of a picture; add --picture FILE.png", name="at", got=at)
-    if collision and picture is None:
-        raise InputError(
-            "--collision shows the collision shapes in a picture; add --picture FILE.png, or switch on the "
-            "entities 'collision' in the blueprint panel of the viewer",
-            name="collision", got=True,
-        )  # fmt: skip
+    view = View.of(at, size, eye, look_at, is_collision=collision)
+    if picture is None:
+        view.check_unused()
     saved = SavedRun(folder)
     summary = saved.summary()
-    _check_time(at or 0.0, float(summary.get("simulated_s") or 0.0))
+    view.check_time(float(summary.get("simulated_s") or 0.0))
     check_output_file(picture, force=force)
-    if (picture is not None or (viewer and not as_json)) and (folder / RECORDING).is_file():
+    if picture is None and viewer and not as_json and (folder / RECORDING).is_file():
         saved.check(RECORDING)
     remark = None if as_json else remark_on_robot(saved, summary)
     with ignore_closed_pipe():
@@ -67,7 +74,7 @@ def show(
             if remark is not None:
                 print_line(f"note: {remark}")
     if picture is not None:
-        save_picture(folder, picture, at or 0.0, has_collisions=collision)
+        save_picture(saved, summary, picture, view)
         if not as_json:
             print_line(f"picture: {picture}")
     elif viewer and not as_json:
@@ -101,27 +108,3 @@ def open_viewer(folder: Path) -> None:
         open_recording(recording)
     except ViewerError as error:
         raise ViewerError(f"{error}; {suggestion}", reason=error.reason) from error
-
-
-def _check_time(at_s: float, end_s: float) -> None:
-    """Raise InputError for a time outside a run that ends at ``end_s``."""
-    if not (math.isfinite(at_s) and 0.0 <= at_s <= end_s):
-        raise InputError(
-            f"--at {at_s:g} is outside the run; give a time from 0 to {end_s:g}, in s",
-            name="at", got=at_s, expected=f"0 to {end_s:g} s",
-        )  # fmt: skip
-
-
-def save_picture(folder: Path, picture: Path, at_s: float, *, has_collisions: bool = False) -> None:
-    """Save a picture of the viewer at a time of a run, on request with the collision shapes.
-
-    Raises
-    ------
-    NotFoundError, ViewerError
-        If there is no recording, or the viewer cannot show it.
-    OutputFolderError
-        If the file cannot be written.
-    """
-    from onorbit_rs import viewer
-
-    viewer.take_screenshot(folder / "run.rrd", picture, at_s=at_s, has_collisions=has_collisions)

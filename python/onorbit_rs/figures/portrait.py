@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.axes3d import Axes3D  # type: ignore[import-untyped]  # ships no types
 
 from onorbit_rs.figures.shading import add_surfaces
-from onorbit_rs.figures.solids import robot_polygons
 from onorbit_rs.figures.space import add_space, fit, label
 from onorbit_rs.figures.style import INK, NORMAL, PAGE, XYZ_COLORS, new_figure
+from onorbit_rs.visuals.solids import robot_polygons
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

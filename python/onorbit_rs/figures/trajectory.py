@@ -10,7 +10,6 @@ from mpl_toolkits.mplot3d.axes3d import Axes3D  # type: ignore[import-untyped]  
 
 from onorbit_rs.common.display_units import with_prefix
 from onorbit_rs.figures.shading import add_surfaces
-from onorbit_rs.figures.solids import robot_polygons
 from onorbit_rs.figures.space import add_space, fit, label
 from onorbit_rs.figures.style import (
     COLUMN,
@@ -23,6 +22,7 @@ from onorbit_rs.figures.style import (
     clock,
     new_figure,
 )
+from onorbit_rs.visuals.solids import robot_polygons
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

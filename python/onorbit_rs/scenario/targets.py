@@ -1,10 +1,10 @@
-"""Target spacecraft that the references of a scenario follow."""
+"""Target spacecraft that the references of a scenario follow, and the frame of the path of a tool."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from onorbit_rs.scenario.schema import Scenario
 
     Floats = NDArray[np.float64]
+
+PathFrame = Literal["world", "lvlh", "base"]
 
 
 @dataclass(frozen=True)
@@ -52,3 +54,10 @@ def task_references(scenario: Scenario) -> Iterator[Any]:
     """Yield the references of tools; references of joints, which have no frame, are omitted."""
     parts = [scenario.reference, *(control.reference for control in scenario.controllers or [])]
     return (part for part in parts if hasattr(part, "frame"))
+
+
+def path_frame(scenario: Scenario) -> PathFrame:
+    """Return the frame of the first reference of a tool if this is L or the base; otherwise W."""
+    frames: tuple[PathFrame, ...] = ("lvlh", "base")
+    first = next((reference.frame for reference in task_references(scenario)), None)
+    return next((frame for frame in frames if frame == first), "world")

@@ -8,7 +8,7 @@ import numpy as np
 import rerun as rr
 
 from onorbit_rs.viewer.font import shown
-from onorbit_rs.viewer.frames import COMPASS, DESIRED, FOLLOW, fix_frame, put_in
+from onorbit_rs.viewer.frames import BESIDE, COMPASS, DESIRED, FOLLOW, fix_frame, put_in
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -76,7 +76,7 @@ def log_all_axes(
     in_orbit: bool,
     has_reference: bool,
 ) -> None:
-    """Log the axes of the base, the tool and its desired pose, and those of I and L beside the robot.
+    """Log the axes of the tool and its desired pose, and those of the base, I and L beside the robot.
 
     Parameters
     ----------
@@ -98,8 +98,8 @@ def log_all_axes(
         Whether the tool has a desired pose.
     """
     entity, follow, compass = setting.entity, setting.frame(FOLLOW), setting.frame(COMPASS)
-    base, desired = setting.frame_of(setting.base), setting.frame(DESIRED)
-    log_axes(recording, entity("axes/base"), base, 0.45 * size, ("x B", "y B", "z B"))
+    desired = setting.frame(DESIRED)
+    log_axes(recording, entity("axes/base"), setting.frame(BESIDE), 0.2 * size, ("x B", "y B", "z B"))
     if setting.tool is not None:
         tool = setting.frame_of(setting.tool)
         log_axes(recording, entity("axes/tool"), tool, 0.1 * size)

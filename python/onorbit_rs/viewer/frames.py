@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-WORLD, LOCAL, FOLLOW, COMPASS = "W", "L", "follow", "compass"
+WORLD, LOCAL, FOLLOW, COMPASS, BESIDE = "W", "L", "follow", "compass", "base_axes"
 DESIRED, GOAL = "desired", "goal"
 AT_REST = np.array([0.0, 0.0, 0.0, 1.0])
 ORIGIN = np.zeros(3)
@@ -92,13 +92,17 @@ def send_local_frame(recording: rr.RecordingStream, rows: TraceRows) -> None:
 
 
 def send_moving_frames(
-    recording: rr.RecordingStream, rows: TraceRows, setting: Setting, compass: Floats
+    recording: rr.RecordingStream, rows: TraceRows, setting: Setting, compass: Floats, beside: Floats
 ) -> None:
-    """Send the motion of base and joints; inertial axes are shown at ``compass``, (3,), m, in ``follow``."""
+    """Send the motion of base and joints.
+
+    Inertial axes are shown at ``compass`` and the axes of the base at ``beside``, (3,), m, in ``follow``.
+    """
     q, time, base = rows["q"], rows.times, setting.frame_of(setting.base)
     quat_fb = q[:, QUATERNION] if rows.quat_lb is None else rows.quat_lb
     send_follow(recording, rows, setting.frame(FOLLOW), setting.frame(COMPASS), q[:, POSITION], compass)
     send_frame(recording, time, setting.frame(FOLLOW), base, ORIGIN, quat_fb)
+    send_frame(recording, time, setting.frame(FOLLOW), setting.frame(BESIDE), beside, quat_fb)
     for joint, values in zip(setting.model.joints, q[:, JOINTS_Q].T, strict=True):
         translation, quat = _joint_transform(joint, values)
         parent, child = setting.frame_of(joint.parent), setting.frame_of(joint.child)

@@ -13,10 +13,10 @@ from onorbit_rs.common.rotations import quaternion_from_matrix
 from onorbit_rs.exceptions import OrbitError
 from onorbit_rs.viewer.colors import ROBOT
 from onorbit_rs.viewer.frames import ORIGIN, fix_frame, put_in, send_frame
-from onorbit_rs.viewer.land import world_map
 from onorbit_rs.viewer.scene import send_trail
 from onorbit_rs.viewer.trace_rows import TIMELINE
 from onorbit_rs.visuals.earth_shape import EARTH_FLATTENING, EARTH_RADIUS_KM, is_earth
+from onorbit_rs.visuals.land import world_map
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

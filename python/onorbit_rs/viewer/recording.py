@@ -186,7 +186,7 @@ def send_craft(
     recording: rr.RecordingStream, rows: TraceRows, setting: Setting, viewpoint: Viewpoint
 ) -> None:
     """Send the links of one robot, its targets and the desired pose of its tool, for every row."""
-    send_moving_frames(recording, rows, setting, viewpoint.inertial_at)
+    send_moving_frames(recording, rows, setting, viewpoint.inertial_at, viewpoint.base_at)
     send_targets(recording, rows, setting)
     if "reference_pose" in rows:
         send_desired(recording, rows, setting)

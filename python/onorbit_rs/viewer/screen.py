@@ -56,21 +56,6 @@ def open_viewer() -> str:
     return url_of(port)
 
 
-def show_collisions(client: ViewerClient) -> None:
-    """Show the collision shapes, which the layout of a recording hides.
-
-    Raises
-    ------
-    OSError
-        If the viewer does not respond or has not loaded the recording.
-    """
-    layout = client.get_blueprint("recording").blueprint
-    for path, archetypes in layout.items():
-        if "/overrides/" in path and "/collision/" in path and "EntityBehavior" in archetypes:
-            archetypes["EntityBehavior"]["visible"] = True
-    client.set_blueprint(layout, "recording")
-
-
 def url_of(port: int) -> str:
     """Return the URL of the viewer at a port."""
     return f"rerun+http://{_LOCAL}:{port}/proxy"

@@ -10,9 +10,8 @@ import numpy as np
 
 from onorbit_rs.common.coordinates import BASE_Q
 from onorbit_rs.scenario.control import grip_controls
-from onorbit_rs.scenario.targets import Target, targets
+from onorbit_rs.scenario.targets import PathFrame, Target, path_frame, targets
 from onorbit_rs.viewer.font import shown
-from onorbit_rs.viewer.targets import PathFrame, path_frame
 from onorbit_rs.visuals.geometry import Shape, extent
 from onorbit_rs.visuals.shapes import collision_shapes, shapes
 

@@ -1,31 +1,20 @@
-"""Target spacecraft in the 3-D view, and the frame in which the path of a tool is drawn."""
+"""Target spacecraft in the 3-D view."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 import rerun as rr
 
 from onorbit_rs.common.rotations import product
-from onorbit_rs.scenario.targets import task_references
 from onorbit_rs.viewer.axes import log_axes
 from onorbit_rs.viewer.colors import TARGET
 from onorbit_rs.viewer.frames import WORLD, send_frame
 
 if TYPE_CHECKING:
-    from onorbit_rs.scenario import Scenario
     from onorbit_rs.viewer.setting import Setting
     from onorbit_rs.viewer.trace_rows import TraceRows
-
-PathFrame = Literal["world", "lvlh", "base"]
-
-
-def path_frame(scenario: Scenario) -> PathFrame:
-    """Return the frame of the first reference of a tool if this is L or the base; otherwise W."""
-    frames: tuple[PathFrame, ...] = ("lvlh", "base")
-    first = next((reference.frame for reference in task_references(scenario)), None)
-    return next((frame for frame in frames if frame == first), "world")
 
 
 def send_targets(recording: rr.RecordingStream, rows: TraceRows, setting: Setting) -> None:

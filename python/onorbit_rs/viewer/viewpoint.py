@@ -95,6 +95,11 @@ class Viewpoint:
         return self.place(-0.8, 0.32)
 
     @property
+    def base_at(self) -> Floats:
+        """Position of the axes of the base in ``follow``, m; axes at the base would cross the robot."""
+        return self.place(-0.8, -0.02)
+
+    @property
     def local_at(self) -> Floats:
         """Position of the axes of L in ``follow``, m."""
         return self.place(-0.8, -0.36)
