@@ -97,9 +97,9 @@ impl EnvironmentLoads {
         Ok(())
     }
 
-    /// Returns the transformation at `t`, s, from the frame of the local reference orbit to W for a robot of
-    /// mass `mass`, kg; `None` if there is no local reference orbit.
-    pub(super) fn shift(&mut self, t: f64, mass: f64) -> Result<Option<Shift>, SimulationError> {
+    /// Returns the transformation at `t`, s, from the frame of the local reference orbit to W for the robot
+    /// `model`; `None` if there is no local reference orbit.
+    pub(super) fn shift(&mut self, t: f64, model: &Model) -> Result<Option<Shift>, SimulationError> {
         if self.local_reference.is_none() {
             return Ok(None);
         }
@@ -108,7 +108,7 @@ impl EnvironmentLoads {
             return Ok(None);
         };
         let (reference, rate) = state_and_rate(&**reference, t)?;
-        Ok(Some(Shift::between(local, &state, &reference, rate, mass)))
+        Ok(Some(Shift::between(local, &state, &reference, rate, model.mass())))
     }
 
     /// Returns the state of the current reference orbit at `t`, s, in which the velocity is the time

@@ -98,7 +98,9 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
                 rate.orbital = orbital_moment(&self.trees, state, rate);
             }
         }
-        self.contacts.rates(&mut rate.contacts);
+        if has_contacts {
+            self.contacts.rates(&mut rate.contacts);
+        }
     }
 
     /// Computes the kinematics, the loads and the time derivatives for a stage after the first.
@@ -153,6 +155,9 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
     /// Determines whether bodies with an impact law touch at `t`, s. Requires the kinematics of `state` in the
     /// trees.
     pub(super) fn touched(&mut self, t: f64, state: &State<S>) -> Result<Touched, SimulationError> {
+        if !self.contacts.has_impact_laws() {
+            return Ok(Touched::default());
+        }
         self.contacts.touched(&self.trees, state).map_err(at_time(t))
     }
 

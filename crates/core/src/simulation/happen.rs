@@ -40,6 +40,9 @@ impl<S: Scalar> RunState<'_, S> {
     /// Moves the records of touch-downs and lift-offs from the contacts to the events that have happened.
     pub(super) fn take_touches(&mut self) {
         let Self { equations, events, numbers, .. } = self;
+        if equations.contacts.happened.is_empty() {
+            return;
+        }
         for mut record in equations.contacts.happened.drain(..) {
             record.systems = record.systems.map(|system| numbers[system]);
             events.records.push(record);

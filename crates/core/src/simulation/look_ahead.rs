@@ -172,7 +172,7 @@ impl<S: Scalar> RunState<'_, S> {
         for (to, from) in [(&mut *q, &state.q), (&mut *v, &state.v)] {
             to.iter_mut().zip(from).for_each(|(to, from)| *to = from.value());
         }
-        if let Some(shift) = loads.shift(*time, tree.model.mass())? {
+        if let Some(shift) = loads.shift(*time, &tree.model)? {
             shift.transform_state(q, v);
         }
         Ok(())

@@ -173,7 +173,7 @@ impl Recorder {
         loads: &mut EnvironmentLoads,
         t: f64,
     ) -> Result<(), SimulationError> {
-        self.shift = loads.shift(t, model.mass())?;
+        self.shift = loads.shift(t, model)?;
         let trace = &mut self.trace;
         if self.options.records_residual {
             let residual = loads.reference_residual(t)?;

@@ -132,6 +132,9 @@ impl<S: Scalar> RunState<'_, S> {
         let is_repeated = self.controllers_updated;
         for number in 0..self.systems.len() {
             let set = &self.systems[number].controllers.set;
+            if set.controls().is_empty() {
+                continue; // never due
+            }
             let starts_at_event = self.has_event && set.is_started_by_event();
             let is_due = match is_repeated {
                 false => starts_at_event || self.schedule.is_tick(number, t),

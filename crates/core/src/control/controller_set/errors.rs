@@ -23,6 +23,9 @@ impl<S: Scalar> ControllerSet<'_, S> {
         q: &[S],
         v: &[S],
     ) -> Result<(), ControlError> {
+        if self.controls.is_empty() {
+            return Ok(());
+        }
         // rows are often recorded at the time and state of the last control tick
         let is_same = |last: &[f64], now: &[S]| last.iter().zip(now).all(|(last, now)| *last == now.value());
         if self.evaluated_at == t && (!self.reads_state || is_same(&self.q, q) && is_same(&self.v, v)) {

@@ -47,9 +47,6 @@ impl Contacts {
         trees: &[Tree<'_, S>],
         state: &State<S>,
     ) -> Result<Touched, ContactError> {
-        if !self.has_impact_laws() {
-            return Ok(Touched::default());
-        }
         let points = self.touched_points(trees, state)?;
         let strikes_stop = || {
             let mut pairs = trees.iter().zip(&state.trees);
