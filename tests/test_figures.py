@@ -9,6 +9,7 @@ import warnings
 from dataclasses import replace
 from html import escape
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -352,3 +353,46 @@ def test_a_portrait_shows_the_axes_of_the_frames_at_their_poses() -> None:
         tips = np.array([x[1] - x[0], y[1] - y[0], z[1] - z[0]])
         np.testing.assert_allclose(tips / np.linalg.norm(tips[0]), pose[:3, :3].T, atol=1e-12)
     assert {text.get_text() for text in axes.texts} == {model.body_names[0], "tool"}
+
+
+@pytest.mark.parametrize(
+    ("origin", "span"),
+    [
+        ([0.0, 0.0, 0.0], [0.5, 0.2, 0.3]),
+        ([-12345.6, 0.0, 98765.4], [9000.0, 9000.0, 9000.0]),  # long labels
+        ([-7000.0, 7000.0, -7000.0], [2e-9, 1e-9, 3e-9]),  # changes in nm
+        ([0.0, 0.0, 0.0], [1.0, 0.0, 0.0]),  # flat boxes
+        ([0.0, 0.0, 0.0], [0.0, 0.0, -2345.67]),
+    ],
+)
+def test_no_label_of_a_path_is_cropped(origin: list[float], span: list[float]) -> None:
+    pose = np.tile(np.eye(4), (5, 1, 1))
+    pose[:, :3, 3] = np.array(origin) + np.linspace(0.0, 1.0, 5)[:, None] * span
+    figure = figures.obtained_trajectory(SimpleNamespace(reference_pose=pose, tool_pose=pose))  # type: ignore[arg-type]
+    figure.canvas.draw()
+    (axes,) = figure.axes
+    box = axes.get_tightbbox(figure.canvas.get_renderer())  # type: ignore[attr-defined]
+    inside = box.transformed(figure.transFigure.inverted())
+    assert inside.x0 >= 0.0 and inside.x1 <= 1.0 and inside.y0 >= 0.0, inside
+    legend = figure.legends[0].get_window_extent().transformed(figure.transFigure.inverted())
+    assert inside.y1 <= legend.y0, (inside, legend)
+
+
+def test_both_paths_and_three_configurations_are_in_one_frame(reach: oo.Run) -> None:
+    figure = figures.desired_trajectory(reach.trace, reach.model)
+    (axes,) = figure.axes
+    paths = {line.get_label(): np.array(line.get_data_3d()).T for line in axes.lines}  # type: ignore[attr-defined]
+    np.testing.assert_array_equal(paths["desired"][-1], reach.trace.reference_pose[-1, :3, 3])
+    np.testing.assert_array_equal(paths["obtained"][-1], reach.trace.tool_pose[-1, :3, 3])
+    labels_shown = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert [label.split(",")[0] for label in labels_shown] == [
+        "desired",
+        "obtained",
+        "start",
+        "middle",
+        "end",
+    ]
+    colors = axes.collections[0].get_facecolor()
+    (one,) = robot_polygons(reach.model, np.asarray(reach.trace.q)[-1:])
+    # the arm is drawn three times, the base once
+    assert len(one[0]) < len(np.atleast_2d(colors)) < 3 * len(one[0])

@@ -20,6 +20,7 @@ from onorbit_rs.figures.style import (
     new_figure,
     tidy,
 )
+from onorbit_rs.visuals.land import centers, smooth_land
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -32,12 +33,14 @@ _MOST_ROWS = 3_000
 LEAST_PER_REVOLUTION = 40
 """Smallest number of points per revolution for which a line is drawn; fewer points are drawn as dots."""
 
+_LAND, _COAST = "#eceae4", "#9a978f"
+
 LOCAL_DEG = 20.0
 """Extent of a track, degrees, below which only its surroundings are drawn (geostationary orbits)."""
 
 
 def ground_track(trace: Trace, earth: Earth) -> Figure:
-    """Draw geodetic longitude and latitude of the base, and its height above the ellipsoid.
+    """Draw geodetic longitude and latitude of the base, with coastlines, and its height above the ellipsoid.
 
     The track is a line. If the run has fewer than :data:`LEAST_PER_REVOLUTION` points per revolution, the
     track is drawn as dots, whose spacing in time is in the legend.
@@ -50,6 +53,7 @@ def ground_track(trace: Trace, earth: Earth) -> Figure:
     lon = unwrapped if np.ptp(unwrapped := np.unwrap(lon, period=360.0)) < LOCAL_DEG else lon
     figure = new_figure(PAGE, 2.6)
     world, profile = figure.subplots(1, 2, width_ratios=(2.0, 1.0))
+    _add_land(world)
     style: dict[str, Any] = {"color": COLORS[0], "linewidth": LINE}
     if len(rows) < LEAST_PER_REVOLUTION * _revolutions(trace):
         apart = float(trace.time[rows[-1]] - trace.time[rows[0]]) / (len(rows) - 1)
@@ -68,6 +72,18 @@ def ground_track(trace: Trace, earth: Earth) -> Figure:
     tidy(profile, label, "height [km]")
     profile.ticklabel_format(axis="y", useOffset=False)
     return figure
+
+
+def _add_land(world: Axes) -> None:
+    """Draw land and its coastlines, also beyond the date line, for a small track that crosses it."""
+    latitude, longitude = centers()
+    every = 2  # cells of one degree
+    share = smooth_land()[::every, ::every]
+    wide = np.concatenate([longitude[::every] - 360.0, longitude[::every], longitude[::every] + 360.0])
+    land = np.tile(share, (1, 3))
+    kept = np.abs(wide) < 180.0 + LOCAL_DEG
+    world.contourf(wide[kept], latitude[::every], land[:, kept], levels=[0.5, 1.1], colors=[_LAND])
+    world.contour(wide[kept], latitude[::every], land[:, kept], levels=[0.5], colors=[_COAST], linewidths=0.3)
 
 
 def _set_window(world: Axes, lon: Floats, lat: Floats) -> None:

@@ -16,6 +16,11 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
+_MARGIN = 0.01
+"""Smallest distance of a label from the edge of a figure, as a fraction of the figure."""
+
+_STEPS = 6
+
 
 def add_space(
     figure: Figure,
@@ -43,6 +48,37 @@ def label(axes: Axes3D, unit: str, pad: float = -5.0, change: str = "") -> None:
     axes.set_xlabel(f"{change}x [{unit}]", fontsize=NORMAL, labelpad=pad)
     axes.set_ylabel(f"{change}y [{unit}]", fontsize=NORMAL, labelpad=pad)
     axes.set_zlabel(f"{change}z [{unit}]", fontsize=NORMAL, labelpad=pad)
+
+
+def legend_of(figure: Figure, axes: Axes3D, columns: int) -> None:
+    """Add the legend of 3-D axes at the top of a figure."""
+    figure.legend(
+        *axes.get_legend_handles_labels(), loc="upper center", frameon=False, fontsize=SMALL, ncols=columns,
+        columnspacing=1.2, handlelength=1.6, handletextpad=0.5,
+    )  # fmt: skip
+
+
+def keep_labels_visible(figure: Figure, axes: Axes3D) -> None:
+    """Shrink and move 3-D axes so that all labels, which matplotlib places outside, are in their area.
+
+    The area is the position of the axes extended to the left, right and lower edge of the figure. Labels
+    keep their size, so that the axes are shrunk in several steps.
+    """
+    area = axes.get_position()
+    for _ in range(_STEPS):
+        figure.canvas.draw()
+        found = axes.get_tightbbox(figure.canvas.get_renderer())  # type: ignore[attr-defined]
+        box = found.transformed(figure.transFigure.inverted())
+        excess = max(box.width - 1.0 + 2.0 * _MARGIN, box.height - area.y1 + _MARGIN, 0.0)
+        place = axes.get_position()
+        shrunk = 1.0 - min(excess, 0.5)
+        right = max(_MARGIN - box.x0, 0.0) - max(box.x1 - 1.0 + _MARGIN, 0.0)
+        up = max(_MARGIN - box.y0, 0.0) - max(box.y1 - area.y1, 0.0)
+        if excess == 0.0 and abs(right) + abs(up) < 1e-4:
+            return
+        width, height = shrunk * place.width, shrunk * place.height
+        left = place.x0 + (place.width - width) / 2.0 + right
+        axes.set_position((left, place.y0 + (place.height - height) / 2.0 + up, width, height))
 
 
 def fit(axes: Axes3D, points: Floats, *, room: tuple[float, float], least: float = 0.0) -> None:

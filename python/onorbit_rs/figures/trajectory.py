@@ -5,20 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
-from mpl_toolkits.mplot3d.axes3d import Axes3D  # type: ignore[import-untyped]  # ships no types
 
 from onorbit_rs.common.display_units import with_prefix
 from onorbit_rs.figures.shading import add_surfaces
-from onorbit_rs.figures.space import add_space, fit, label
+from onorbit_rs.figures.space import add_space, fit, keep_labels_visible, label, legend_of
 from onorbit_rs.figures.style import (
     COLUMN,
     DESIRED,
-    INK,
-    NORMAL,
     OBTAINED,
-    PAGE,
-    SMALL,
     clock,
     new_figure,
 )
@@ -31,29 +27,45 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
+_SHARES = (0.25, 0.5, 1.0)
+"""Strength of the robot's colours at the start, the middle and the end of the path."""
+
+_APART = 0.08
+"""Displacement, in sizes of the robot, up to which a face of an earlier configuration is not drawn."""
+
 NEARLY_STILL = 0.02
 """Ratio of a path's size to its distance from W's origin below which it is drawn relative to its start."""
 
 
 def desired_trajectory(trace: Trace, model: Model) -> Figure:
-    """Draw Fig. 4: the robot at the first, the middle and the last point of the desired path, in W."""
-    path = np.asarray(trace.reference_pose)[:, :3, 3]
-    rows = [0, _row_at_half(path), len(path) - 1]
+    """Draw Fig. 4: the robot at the start, the middle and the end of the desired path, in one frame, in W.
+
+    The robot is paler at earlier times. The obtained path is drawn over the desired one.
+    """
+    desired = np.asarray(trace.reference_pose)[:, :3, 3]
+    obtained = np.asarray(trace.tool_pose)[:, :3, 3]
+    rows = [0, _row_at_half(desired), len(desired) - 1]
     drawn = robot_polygons(model, np.asarray(trace.q)[rows])
-    corners = np.vstack([path, *(faces.reshape(-1, 3) for faces, _ in drawn)])
-    figure = new_figure(PAGE, 3.1)
+    faces, colors = _overlaid(drawn)
+    figure = new_figure(COLUMN, 3.6)
     figure.set_layout_engine("none")
+    axes = add_space(figure, (0.02, 0.03, 0.90, 0.83), elevation=14.0, azimuth=-68.0)
+    add_surfaces(axes, faces, colors)
+    axes.computed_zorder = False
+    axes.plot(*_sparse(desired).T, color=DESIRED, linewidth=2.4, zorder=11, label="desired")
+    axes.plot(*_sparse(obtained).T, color=OBTAINED, linewidth=0.9, zorder=12, label="obtained")
     time, time_label = clock(trace)
-    for place, (row, (faces, colors)) in enumerate(zip(rows, drawn, strict=True)):
-        axes = add_space(figure, (0.002 + place * 0.325, 0.09, 0.325, 0.86), elevation=14.0, azimuth=-68.0)
-        add_surfaces(axes, faces, colors)
-        _path_on_top(axes, path)
-        axes.scatter(*path[row], color=OBTAINED, s=14, depthshade=False, zorder=12)
-        unit = time_label.removeprefix("time [").removesuffix("]")
-        where = f"{('start', 'middle', 'end')[place]}, t = {time[row]:.4g} {unit}"
-        figure.text(0.17 + place * 0.325, 0.945, where, fontsize=NORMAL, ha="center", color=INK)
-        fit(axes, corners, room=(1.38, 1.86))
-        label(axes, "m")
+    unit = time_label.removeprefix("time [").removesuffix("]")
+    for row, share, where in zip(rows, _SHARES, ("start", "middle", "end"), strict=True):
+        tint = [1.0 - share * (1.0 - part) for part in to_rgb(OBTAINED)]
+        axes.scatter(
+            *desired[row], color=[tint], edgecolor=DESIRED, s=22, depthshade=False, zorder=13,
+            label=f"{where}, {time[row]:.4g} {unit}",
+        )  # fmt: skip
+    fit(axes, np.vstack([desired, obtained, faces.reshape(-1, 3)]), room=(1.5, 1.75))
+    label(axes, "m", pad=-4.0)
+    keep_labels_visible(figure, axes)
+    legend_of(figure, axes, columns=3)
     return figure
 
 
@@ -81,16 +93,21 @@ def obtained_trajectory(trace: Trace) -> Figure:
     axes.scatter(*desired[-1], color=DESIRED, s=22, depthshade=False, label="end", zorder=10)
     fit(axes, np.vstack([desired, obtained]), room=(1.9, 1.75), least=0.4)
     label(axes, unit, pad=-4.0, change="Δ" if is_small else "")
-    figure.legend(
-        *axes.get_legend_handles_labels(), loc="upper center", frameon=False, fontsize=SMALL, ncols=4,
-        columnspacing=1.2, handlelength=1.6, handletextpad=0.5,
-    )  # fmt: skip
+    keep_labels_visible(figure, axes)
+    legend_of(figure, axes, columns=4)
     return figure
 
 
-def _path_on_top(axes: Axes3D, path: Floats) -> None:
-    axes.computed_zorder = False
-    axes.plot(*_sparse(path).T, color=DESIRED, linewidth=1.2, zorder=11)
+def _overlaid(drawn: list[tuple[Floats, Floats]]) -> tuple[Floats, Floats]:
+    """Return the faces of all configurations; those of earlier ones only where they differ from the last."""
+    last, _ = drawn[-1]
+    size = float(np.ptp(last.reshape(-1, 3), axis=0).max())
+    found = []
+    for share, (faces, colors) in zip(_SHARES, drawn, strict=True):
+        apart = np.linalg.norm(faces - last, axis=2).max(axis=1)
+        kept = (apart > _APART * size) | (share == 1.0)
+        found.append((faces[kept], 1.0 - share * (1.0 - colors[kept])))
+    return np.concatenate([faces for faces, _ in found]), np.concatenate([colors for _, colors in found])
 
 
 def _along(path: Floats) -> Floats:
