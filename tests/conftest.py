@@ -19,6 +19,12 @@ def no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(finish, "write_pictures", lambda *_, **__: None)
 
 
+@pytest.fixture
+def no_campaign_report(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Turns off the report of campaigns in this process, whose figures take more time than short cases."""
+    monkeypatch.setattr("onorbit_rs.campaigns.run.write_report", lambda *_: None)
+
+
 def pytest_configure(config: pytest.Config) -> None:
     """Compiles spartpy before the workers start; otherwise all of them would write the same file."""
     if getattr(config.option, "numprocesses", None) and importlib.util.find_spec("SPARTpy"):

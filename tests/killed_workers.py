@@ -34,7 +34,7 @@ class Law:
 def check_killed_workers(
     folder: Path, cases: int, run: Callable[[dict[str, Any]], Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Runs a campaign in which 1 of 40 cases, and at least three, kill their worker when they first run.
+    """Runs a campaign in which 1 of 40 cases, and at least two, kill their worker when they first run.
 
     The draws of a Latin hypercube are in intervals of equal width, so that their number below ``share`` is
     known.
@@ -42,7 +42,7 @@ def check_killed_workers(
     (folder / "law.py").write_text(LAW)
     markers = folder / "markers"
     markers.mkdir()
-    deaths = max(3, cases // 40)
+    deaths = max(2, cases // 40)
     share = deaths / cases
     controller = {"kind": "python", "file": str(folder / "law.py"), "class": "Law"}
     controller["arguments"] = {"folder": str(markers), "draw": 1.0, "share": share}

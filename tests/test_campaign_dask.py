@@ -20,6 +20,7 @@ from onorbit_rs.exceptions import CampaignError, InputError
 
 distributed = pytest.importorskip("distributed", reason="Dask is not installed")
 pytestmark = [
+    pytest.mark.usefixtures("no_campaign_report"),
     pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::ResourceWarning"),
     pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning"),
 ]
@@ -61,7 +62,7 @@ def test_killed_workers_lose_no_case_and_repeat_none(
     monkeypatch.setattr("onorbit_rs.campaigns.on_dask._BATCH_S", 0.05)
     check_killed_workers(
         tmp_path,
-        number_of_cases(20),
+        number_of_cases(12),
         lambda campaign: oo.campaign(campaign, tmp_path / "out", cluster=cluster),
         monkeypatch,
     )

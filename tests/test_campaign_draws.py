@@ -102,6 +102,7 @@ def test_a_choice_takes_every_value_equally_often() -> None:
     ("data", "words"),
     [
         ({"uniform": [2, 1]}, "the first must be smaller"),
+        ({"uniform": ["3 deg", "1 deg"]}, "'uniform' are [3 deg, 1 deg]; the first must be smaller"),
         ({"uniform": [1, 1]}, "the first must be smaller"),
         ({"normal": [0, -1]}, "the standard deviation is -1; it must be above zero"),
         ({"normal": [0, 1], "within": [3, 2]}, "the first must be smaller"),

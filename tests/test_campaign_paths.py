@@ -155,6 +155,7 @@ def test_the_nominal_data_are_not_changed() -> None:
         ("initial.attitude", {"scale": {"normal": [1, 0.1]}}, "an attitude is varied by 'add'"),
         ("initial.position", {"scale": {"normal": [1, "1 m"]}}, "is not a plain number"),
         ("robot.links.torso.mass", {"set": {"uniform": [-1, 2]}}, "must be above zero"),
+        ("robot.links.torso.mass", {"set": {"uniform": ["85 m", "101 m"]}}, "'85 m' is not a mass"),
         ("robot.links.torso.inertia", {"add": {"normal": [0, 1]}}, "varied by 'scale'"),
         ("robot.links.torso.inertia", {"scale": {"uniform": [-1, 1]}}, "must be above zero"),
         ("robot.links.tool.mass", {"scale": {"uniform": [1, 2]}}, "use 'set'"),
@@ -204,6 +205,10 @@ def test_an_entry_that_is_varied_twice_is_refused() -> None:
         (campaign_of(BODY, {"initial.position": NORMAL}, sampling="latin"), "did you mean 'latin_hypercube'"),
         (campaign_of(BODY, {"initial.position": NORMAL}, keep="everything"), "must be 'summary'"),
         (campaign_of(BODY | {"initiol": 1}, {"initial.position": NORMAL}), "unknown key"),
+        (
+            campaign_of(BODY, {"initial.position": NORMAL}) | {"success": {"a": {"below": 1}}},
+            "is an entry of 'campaign'; indent it, so that it is campaign.success",
+        ),
     ],
 )  # fmt: skip
 def test_invalid_campaigns_are_refused(campaign: dict[str, Any], words: str) -> None:

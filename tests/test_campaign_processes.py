@@ -21,6 +21,8 @@ from onorbit_rs.campaigns import run as campaign_run
 from onorbit_rs.campaigns.pool import Board
 from onorbit_rs.exceptions import CampaignError
 
+pytestmark = pytest.mark.usefixtures("no_campaign_report")
+
 SPIN = {"initial.angular_velocity": {"add": {"normal": [0.0, 0.1]}}}
 CONTROLLER = """
 import os, signal
@@ -113,7 +115,7 @@ def test_an_error_of_a_controller_is_kept(tmp_path: Path) -> None:
 def test_killed_workers_lose_no_case_and_repeat_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     check_killed_workers(
         tmp_path,
-        number_of_cases(24),
+        number_of_cases(12),
         lambda campaign: oo.campaign(campaign, tmp_path / "out", workers=2),
         monkeypatch,
     )

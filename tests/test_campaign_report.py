@@ -15,7 +15,13 @@ from campaign_files import BODY, campaign_of, spin
 import onorbit_rs as oo
 from onorbit_rs.campaigns.kept_columns import rows_every
 from onorbit_rs.campaigns.numbers import numbers_of
-from onorbit_rs.campaigns.statistics import rank_correlation, ranks, sensitivities, wilson
+from onorbit_rs.campaigns.statistics import (
+    rank_correlation,
+    ranks,
+    sensitivities,
+    significant_correlation,
+    wilson,
+)
 
 
 @pytest.mark.parametrize("successes", [0, 1, 17, 99, 100])
@@ -91,8 +97,7 @@ def test_the_report_shows_success_sensitivities_and_reasons(tmp_path: Path) -> N
     vary = spin()["campaign"]["vary"]
     vary["simulation.time_step"] = {"set": {"choice": [1e-3, 1e-3, 1e-3, 0.5]}}
     success = {"base_rotation_max_rad": {"at_most": 0.0075}}
-    keep = {"failures": "full"}
-    campaign = campaign_of(BODY, vary, 24, success=success, keep=keep) | {"name": "<spin>"}
+    campaign = campaign_of(BODY, vary, 24, success=success) | {"name": "<spin>"}
     table = oo.campaign(campaign, tmp_path)
     page = (tmp_path / "report.html").read_text()
     text = html.unescape(re.sub(r"<[^>]+>", " ", page))
@@ -108,10 +113,19 @@ def test_the_report_shows_success_sensitivities_and_reasons(tmp_path: Path) -> N
     strongest = re.search(r"base rotation in W, largest\s+(\S+)\s+(-?0\.\d+)", text.split("Sensitivities")[1])
     assert strongest
     assert strongest[1].startswith("initial.angular_velocity")
-    bad = [row["case"] for row in table.to_pylist() if row["status"] == "complete" and not row["success"]]
-    folders = {folder.name for folder in (tmp_path / "failures").iterdir()}
-    assert {f"case_{case}" for case in bad} <= folders
-    assert (tmp_path / "failures" / f"case_{bad[0]}" / "run.rrd").exists()
+    section = text.split("Sensitivities")[1].split("Figures")[0]
+    shown = [abs(float(number)) for number in re.findall(r"\s(-?0\.\d{3,})\s", section)]
+    assert shown == sorted(shown, reverse=True)
+    assert min(shown) >= significant_correlation(24)
+
+
+def test_cases_without_success_are_kept_in_full(tmp_path: Path) -> None:
+    rotation = sorted(oo.campaign(spin(4))["base_rotation_max_rad"].to_pylist())
+    success = {"base_rotation_max_rad": {"below": rotation[-1]}}
+    table = oo.campaign(spin(4, success=success, keep={"failures": "full"}), tmp_path)
+    (bad,) = [row["case"] for row in table.to_pylist() if not row["success"]]
+    assert [folder.name for folder in (tmp_path / "failures").iterdir()] == [f"case_{bad}"]
+    assert (tmp_path / "failures" / f"case_{bad}" / "run.rrd").exists()
 
 
 def test_the_bundled_campaign_is_valid() -> None:

@@ -21,6 +21,9 @@ from onorbit_rs.exceptions import (
     OutputInUseError,
     OutputNotEmptyError,
 )
+from onorbit_rs.simulation import finish
+
+pytestmark = pytest.mark.usefixtures("no_campaign_report")
 
 
 def test_every_number_of_workers_gives_the_same_table(tmp_path: Path) -> None:
@@ -212,6 +215,10 @@ def test_a_folder_in_use_is_refused(tmp_path: Path) -> None:
         lock.release()
 
 
+def full_table() -> None:
+    raise OutputFolderError("cannot write cases.parquet: No space left on device", path="cases.parquet")
+
+
 def test_a_full_disk_loses_nothing(tmp_path: Path, monkeypatch: Any) -> None:
     import errno
 
@@ -231,6 +238,9 @@ def test_a_full_disk_loses_nothing(tmp_path: Path, monkeypatch: Any) -> None:
         patched.setattr(storage.CampaignFolder, "_write_part", full)
         oo.campaign(spin(cases=12), tmp_path / "full", workers=1)
     assert same(oo.campaign(spin(cases=12), tmp_path / "full")).equals(same(whole))
+    with monkeypatch.context() as patched, pytest.raises(OutputFolderError, match="12 of 12 cases are kept"):
+        patched.setattr("onorbit_rs.campaigns.run.write_cases", lambda *_: full_table())
+        oo.campaign(spin(cases=12), tmp_path / "full")
 
 
 def test_a_damaged_part_is_reported(tmp_path: Path) -> None:
@@ -248,6 +258,7 @@ def test_a_damaged_part_is_reported(tmp_path: Path) -> None:
     [
         ({"workers": 0}, InputError, "at least 1"),
         ({"workers": True}, DtypeError, "positive integer"),
+        ({"cluster": "nonsense"}, InputError, "with its port, such as tcp://10.0.0.1:8786, or 'local'"),
         ({"cases": -1}, oo.exceptions.ScenarioError, "below the minimum"),
     ],
 )
@@ -262,9 +273,13 @@ def test_a_case_that_does_not_exist_is_refused() -> None:
             oo.campaign_case(spin(), case)
     with pytest.raises(NotFoundError):
         oo.campaign_case("nowhere", 1)
+    with pytest.raises(NotFoundError, match="'free_tumble' is a scenario, not a campaign; onorbit run runs"):
+        oo.campaign("free_tumble")
 
 
-def test_the_command_writes_the_files_and_the_folder_of_a_case(tmp_path: Path) -> None:
+def test_the_command_writes_the_files_and_the_folder_of_a_case(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     file, out = write(spin(), tmp_path / "spin.yaml"), tmp_path / "out"
     done = onorbit("campaign", str(file), "--out", str(out), "--cases", "5", "--workers", "2")
     assert done.returncode == 0, done.stderr
@@ -277,6 +292,7 @@ def test_the_command_writes_the_files_and_the_folder_of_a_case(tmp_path: Path) -
     row = pq.read_table(out / "cases.parquet").slice(2, 1).to_pylist()[0]
     summary = json.loads((tmp_path / "case" / "summary.json").read_text())
     assert summary["base_rotation_max_rad"] == row["base_rotation_max_rad"]
+    monkeypatch.setattr(finish, "write_pictures", lambda *_, **__: None)  # they take most of the time
     inside = onorbit("campaign", str(file), "--case", "2", "--out", str(out), "-q")
     assert inside.returncode == 0, inside.stderr
     assert (out / "case_2" / "summary.json").exists()

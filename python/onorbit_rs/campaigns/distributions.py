@@ -24,9 +24,12 @@ def _cdf(z: float) -> float:
 
 
 class Amount(float):
-    """Number in SI; ``unit`` is the unit in which it was written, empty if it had none."""
+    """Number in SI; ``unit`` is the unit in which it was written, empty if it had none, and ``written`` the
+    text before the conversion.
+    """
 
     unit: str = ""
+    written: str = ""
 
 
 def amount(value: Any) -> Amount:
@@ -35,7 +38,7 @@ def amount(value: Any) -> Amount:
         return value
     number, unit = split_quantity(value)
     found = Amount(number)
-    found.unit = unit
+    found.unit, found.written = unit, str(value)
     return found
 
 
@@ -82,10 +85,10 @@ class Distribution(Part):
         for name in ("uniform", "within"):
             pair = getattr(self, name)
             if pair is not None and not pair[0] < pair[1]:
-                low, high = map(float, pair)
-                raise invalid(f"the bounds of '{name}' are [{low:g}, {high:g}]; the first must be smaller")
+                shown = ", ".join(bound.written for bound in pair)
+                raise invalid(f"the bounds of '{name}' are [{shown}]; the first must be smaller")
         if self.normal is not None and self.normal[1] <= 0.0:
-            raise invalid(f"the standard deviation is {self.normal[1]:g}; it must be above zero")
+            raise invalid(f"the standard deviation is {self.normal[1].written}; it must be above zero")
         if self.within is not None and self._probability < LEAST_PROBABILITY:
             raise invalid(
                 f"the bounds of 'within' have a probability of {self._probability:.1e}, below "

@@ -188,7 +188,7 @@ class Expander:
 
     def _parsed(self, path: str, number: Amount, dimension: units.Dimension) -> None:
         try:
-            parse_quantity(f"1 {number.unit}" if number.unit else float(number), dimension)
+            parse_quantity(number.written if number.unit else float(number), dimension)
         except QuantityError as error:
             raise self.error(path, str(error)) from None
 
@@ -198,8 +198,9 @@ class Expander:
             return
         distribution = change.distribution
         numbers = [*distribution.amounts, *(amount(value) for value in distribution.choice or ())]
-        for unit in dict.fromkeys(number.unit for number in numbers if number.unit):
-            self._validated(path, place, f"1 {unit}", is_about=_is_about_units)
+        first = {number.unit: number for number in reversed(numbers) if number.unit}
+        for number in first.values():
+            self._validated(path, place, number.written, is_about=_is_about_units)
 
     def _valid(self, path: str, place: Place, value: Any) -> Any:
         """Return a value of an entry in SI after validating it; raises ScenarioError."""

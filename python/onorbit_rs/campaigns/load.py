@@ -8,12 +8,14 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from onorbit_rs.campaigns.bundled import CAMPAIGNS
-from onorbit_rs.campaigns.document import CampaignDocument
+from onorbit_rs.campaigns.document import Campaign, CampaignDocument
 from onorbit_rs.exceptions import DtypeError, NotFoundError
 from onorbit_rs.scenario.load import AnyScenario, check
 from onorbit_rs.scenario.locations import scenario_error
 from onorbit_rs.scenario.yaml_lines import Lines, read_yaml
 from onorbit_rs.scenarios import SCENARIOS
+
+_OUTER, _INNER = CampaignDocument.yaml_keys(), Campaign.yaml_keys()
 
 
 class LoadedCampaign(NamedTuple):
@@ -45,6 +47,12 @@ def load_campaign(
             f"{source!s:.60} ({kind}) is not a campaign; give a bundled name, a YAML file or a mapping",
             name="campaign", got=kind, expected="str, path or mapping",
         )  # fmt: skip
+    if os.fspath(source) in SCENARIOS.names() and not Path(source).exists():
+        raise NotFoundError(
+            f"{source!r} is a scenario, not a campaign; onorbit run runs it, and a campaign file names it: "
+            f"{{campaign: {{scenario: {source}, cases: ..., vary: ...}}}}",
+            path=str(source), kind="campaign",
+        )  # fmt: skip
     file = CAMPAIGNS.locate(source)
     data, lines = read_yaml(file)
     return _checked(data, file, lines, cases)
@@ -56,6 +64,9 @@ def _checked(data: Any, file: Path | None, lines: Lines, cases: int | None) -> L
         hint = "; onorbit run runs a scenario" if is_scenario else ""
         message = f"'campaign' is missing; give {{campaign: {{scenario: ..., cases: ..., vary: ...}}}}{hint}"
         raise scenario_error(message, file, None)
+    if misplaced := next((key for key in data if key in _INNER and key not in _OUTER), None):
+        message = f"is an entry of 'campaign'; indent it, so that it is campaign.{misplaced}"
+        raise scenario_error(message, file, lines.get((misplaced,)), misplaced)
     if cases is not None and isinstance(data["campaign"], dict):
         data = data | {"campaign": data["campaign"] | {"cases": cases}}
     document = CampaignDocument.checked(data, file, lines)

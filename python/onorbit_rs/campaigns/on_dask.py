@@ -34,8 +34,12 @@ _WITHOUT_WORKERS_S = 60.0
 """Wall-clock time for which a campaign waits for the first worker, s."""
 _LOST_S = 15.0
 """Wall-clock time without a connection after which a cluster counts as gone, s."""
-_RESULT_S = 20.0
-"""Wall-clock time for which a result is awaited before the connection is checked, s."""
+_RESULT_S = 1.0
+"""Wall-clock time for which a result is awaited before the connection is checked, s.
+
+It doubles each time. A large result takes long, but that of a worker that died must be requested again.
+"""
+_LONGEST_RESULT_S = 60.0
 _BATCH_S = 1.0
 """Wall-clock time of the cases of one task, s."""
 _AHEAD = 1
@@ -221,11 +225,13 @@ class _Tasks:
 
     def _result(self, future: Any) -> Any:
         """Return the result of a task; Dask runs the task again if its worker died before it was fetched."""
+        seconds = _RESULT_S
         while True:
             try:
-                return future.result(timeout=_RESULT_S)
+                return future.result(timeout=seconds)
             except TimeoutError:
                 self._check_connection()
+                seconds = min(2.0 * seconds, _LONGEST_RESULT_S)
 
     def _gone(self) -> CampaignError:
         return CampaignError(f"the cluster at {self._address} is gone", reason="cluster gone")

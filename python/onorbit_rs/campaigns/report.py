@@ -94,13 +94,16 @@ def _percentiles(found: Sequence[Result]) -> HtmlTable:
 
 
 def _sensitivities(ranked: Sequence[Sensitivity], found: Sequence[Result], cases: int) -> HtmlTable:
-    labels = {one.key: one.label for one in found}
+    """Return a table of the strongest correlations that are significant."""
+    labels, threshold = {one.key: one.label for one in found}, significant_correlation(cases)
+    shown = [one for one in ranked if abs(one.correlation) >= threshold][:_MOST_CASES]
     return HtmlTable(
         "Sensitivities",
-        "Spearman's rank correlations of dispersed values and results, the strongest first. For independent "
-        f"columns, {significant_correlation(cases):.2f} is exceeded in one of 20 correlations.",
+        "Spearman's rank correlations of dispersed values and results of at least "
+        f"{threshold:.2f}, the strongest first. Of independent columns, one in 20 exceeds this value by "
+        "chance.",
         ["result", "dispersed value", "rank correlation"],
-        [[labels.get(one.result, one.result), one.value, one.correlation] for one in ranked[:_MOST_CASES]],
+        [[labels.get(one.result, one.result), one.value, one.correlation] for one in shown],
     )
 
 

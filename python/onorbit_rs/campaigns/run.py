@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
@@ -90,6 +91,7 @@ def campaign(
         If the disk is full; the cases on the disk are kept, and the same call continues the campaign.
     """
     count = _checked_workers(workers)
+    _check_cluster(cluster)
     loaded = load_campaign(source, cases=cases)
     plan = plan_of(loaded)
     _check_nominal(plan, loaded)
@@ -107,14 +109,15 @@ def campaign(
         pending = [case for case in range(plan.cases) if case not in done]
         with _keeping(folder, plan.cases):
             _run(plan, pending, engine, conditions, folder.add, quiet=quiet)
-        kept = (outcome for outcome in folder.outcomes() if outcome.case < plan.cases)
-        columns = rows_of(kept, plan.value_names, conditions)
-        table = table_of(columns)
-        write_cases(folder, table)
-        write_columns(folder, plan, range(plan.cases))
-        write_failures(folder, plan, columns, quiet=quiet)
-        with doing("writing the report", quiet=quiet):
-            write_report(folder, loaded.document, columns, plan.value_names)
+            folder.flush()
+            kept = (outcome for outcome in folder.outcomes() if outcome.case < plan.cases)
+            columns = rows_of(kept, plan.value_names, conditions)
+            table = table_of(columns)
+            write_cases(folder, table)
+            write_columns(folder, plan, range(plan.cases))
+            write_failures(folder, plan, columns, quiet=quiet)
+            with doing("writing the report", quiet=quiet):
+                write_report(folder, loaded.document, columns, plan.value_names)
         return table
 
 
@@ -231,6 +234,17 @@ def _checked_workers(workers: int | None) -> int:
     if workers is not None and workers < 1:
         raise InputError(f"workers is {workers}; it must be at least 1, or None for every core")
     return workers or os.cpu_count() or 1
+
+
+def _check_cluster(cluster: str | None) -> None:
+    """Raise InputError unless ``cluster`` is None, ``local`` or an address with a port."""
+    if cluster is None or cluster == "local" or re.fullmatch(r"([a-z]+://)?[^/\s]+:[0-9]+", cluster):
+        return
+    raise InputError(
+        f"cluster is {cluster!r}; give the address of a scheduler with its port, such as "
+        "tcp://10.0.0.1:8786, or 'local'",
+        name="cluster", got=cluster,
+    )  # fmt: skip
 
 
 def _check_nominal(plan: Plan, loaded: LoadedCampaign) -> None:

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
+from onorbit_rs.common.display_units import OR, with_prefix
 from onorbit_rs.figures.style import (
     COLORS,
     FAINT_INK,
@@ -29,6 +31,8 @@ if TYPE_CHECKING:
     Bools = NDArray[np.bool_]
 
 COLUMNS = 3
+_MOST_TICKS = 4
+"""Largest number of intervals between the labels of an axis, so that they do not overlap."""
 _WITH, _WITHOUT = COLORS[0], COLORS[1]
 
 
@@ -45,17 +49,25 @@ class Series(NamedTuple):
         name = legend_name(self.name)
         return f"{name} [{self.unit}]" if self.unit else name
 
+    def with_prefix(self) -> Series:
+        """Return the series in a unit with an SI prefix, so that the axis needs no power of ten."""
+        if not self.unit or self.unit in ("deg", "%") or OR in self.unit:
+            return self
+        factor, unit = with_prefix(float(np.nanmax(np.abs(self.values))), self.unit)
+        return self._replace(unit=unit, values=factor * self.values)
+
 
 def result_distributions(results: Sequence[Series], is_success: Bools) -> Figure:
     """Draw one histogram per result; cases without success are stacked on those with success."""
     figure, panels = _grid(len(results))
-    for axes, result in zip(panels, results, strict=True):
+    scaled = [result.with_prefix() for result in results]
+    for number, (axes, result) in enumerate(zip(panels, scaled, strict=True)):
         is_given = np.isfinite(result.values)
         parts = [result.values[is_given & chosen] for chosen in (is_success, ~is_success)]
         bins = min(40, max(5, round(2.0 * np.sqrt(is_given.sum()))))
         axes.hist(parts, bins=bins, stacked=True, color=[_WITH, _WITHOUT], label=["success", "no success"])
-        tidy(axes, result.label, "cases")
-        axes.xaxis.get_offset_text().set_fontsize(SMALL)
+        tidy(axes, "", "" if number % COLUMNS else "cases")
+        axes.set_title(result.label, loc="left", fontsize=NORMAL, color=INK)
     if not is_success.all():
         figure.legend(
             *panels[0].get_legend_handles_labels(), loc="outside upper left", frameon=False, fontsize=SMALL,
@@ -102,13 +114,15 @@ def correlation_map(
 def strongest_pairs(pairs: Sequence[tuple[Series, Series]], is_success: Bools) -> Figure:
     """Draw results over dispersed values, one panel per pair; cases without success are orange."""
     figure, panels = _grid(len(pairs))
-    for axes, (value, result) in zip(panels, pairs, strict=True):
+    scaled = [(value, result.with_prefix()) for value, result in pairs]
+    for axes, (value, result) in zip(panels, scaled, strict=True):
         for chosen, color, size in ((is_success, _WITH, 3.0), (~is_success, _WITHOUT, 6.0)):
             axes.scatter(
                 value.values[chosen], result.values[chosen], s=size, color=color, linewidths=0.0, alpha=0.7,
                 rasterized=len(is_success) > 2000,
             )  # fmt: skip
-        tidy(axes, value.label, result.label)
+        tidy(axes, value.label, "")
+        axes.set_title(result.label, loc="left", fontsize=NORMAL, color=INK)
         axes.margins(x=0.03)
     return figure
 
@@ -118,6 +132,8 @@ def _grid(count: int) -> tuple[Figure, list[Axes]]:
     rows = -(-count // COLUMNS)
     figure = new_figure(PAGE, 1.75 * rows)
     panels = figure.subplots(rows, COLUMNS, squeeze=False)
+    for axes in panels.flat:
+        axes.xaxis.set_major_locator(MaxNLocator(_MOST_TICKS))
     for axes in panels.flat[count:]:
         axes.set_visible(False)
     return figure, list(panels.flat[:count])
