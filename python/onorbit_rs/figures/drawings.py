@@ -63,7 +63,7 @@ def _of_the_arm(subject: Subject) -> Iterator[tuple[int, Drawing]]:
     trace, model = subject.trace, subject.model
     if "reference_pose" in trace.columns():
         if model is not None:
-            about = "Path of the tool, desired (black) and obtained (orange), and the robot three times, in W."
+            about = "Path of the tool in W, desired (black) and obtained (orange); the robot at three times."
             yield 4, Drawing("desired_trajectory", about, partial(desired_trajectory, trace, model))
         about = "The path of the tool, desired (black) and obtained (orange), in W."
         yield 5, Drawing("obtained_trajectory", about, partial(obtained_trajectory, trace))

@@ -40,6 +40,7 @@ from onorbit_rs.simulation.command_format import Command, in_order, read_command
 from onorbit_rs.simulation.command_format import checked as checked_command
 from onorbit_rs.simulation.finish import finished, keep_failed, keep_stopped
 from onorbit_rs.simulation.live import CHECKPOINT_EVERY, watched
+from onorbit_rs.simulation.memory import check_size
 from onorbit_rs.simulation.replay import check_commands
 
 if TYPE_CHECKING:
@@ -175,8 +176,9 @@ def run(
     ------
     OnOrbitError
         Before the run starts: for an invalid scenario (``ScenarioError``), a missing file
-        (``NotFoundError``), a command or change that does not fit (``InputError``, ``ControlError``, …), or a
-        folder that is not empty, not writable or in use by another process (``OutputFolderError``).
+        (``NotFoundError``), a command or change that does not fit (``InputError``, ``ControlError``, …), rows
+        for which memory or disk are too small (``InputError``), or a folder that is not empty, not writable
+        or in use by another process (``OutputFolderError``).
     SimulationError
         If the run diverges; the trace before the divergence is in the error and in ``out``.
     RunInterrupted
@@ -312,6 +314,7 @@ def _simulate(
 ) -> Run:
     """Simulate and write the results, including those of a run that was stopped or failed."""
     scenario, duration = built.scenario, built.scenario.simulation.duration
+    check_size(built, folder.path if folder else None)
     try:
         with progress_bar(scenario.name, duration, quiet=quiet) as progress:
             trace: Trace | WorldTrace

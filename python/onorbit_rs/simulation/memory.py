@@ -1,0 +1,133 @@
+"""Memory and disk space that the rows of a run require, estimated before the run."""
+
+from __future__ import annotations
+
+import math
+import os
+import shutil
+import warnings
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from onorbit_rs.exceptions import InputError
+from onorbit_rs.output.columns import row_shape
+from onorbit_rs.scenario.build_world import BuiltWorld
+from onorbit_rs.scenario.targets import task_references
+
+if TYPE_CHECKING:
+    from onorbit_rs.scenario.build import Built
+
+BASE, PER_ROWS, PER_RECORDED = 0.25e9, 2.2, 1.5
+"""Memory of a run with a folder: that of the loaded modules, bytes, and ratios to the size of all rows and to
+that of the rows in the recording; measured with runs of 8e4 to 4e6 rows."""
+
+BASE_ALONE, PER_ROWS_ALONE = 0.12e9, 1.1
+"""The same for a run without a folder."""
+
+MOST_RECORDED = 500_000
+"""Largest number of rows in the recording."""
+
+LARGE = 1e9
+"""Size of the rows of a run, bytes, above which a warning states the size."""
+
+FITTING = 60e6
+"""Size of the rows for which a message suggests ``record_every``, bytes: the run then needs below 500 MB."""
+
+_ALWAYS = (
+    "time", "q", "v", "tau", "acceleration", "momentum", "impulse", "kinetic_energy", "work", "dissipated",
+    "center_of_mass",
+)  # fmt: skip
+_WITH_TOOL = ("tool_pose",)
+_WITH_REFERENCE = ("reference_pose", "position_error", "attitude_error")
+_WITH_ORBIT = ("position_eci", "velocity_eci", "reference_position_eci", "reference_velocity_eci")
+_OF_A_LOOP, _OF_A_CONTACT = 11, 19
+
+
+def rows_of(built: Built | BuiltWorld) -> int:
+    """Return the number of rows of a run per system, without those of events."""
+    settings = built.scenario.simulation
+    return math.ceil(settings.steps / settings.record_every) + 1
+
+
+def estimated_bytes(built: Built | BuiltWorld) -> float:
+    """Return the approximate size of the rows of a run, bytes, without recorded wrenches."""
+    systems = list(built.systems.values()) if isinstance(built, BuiltWorld) else [built]
+    contacts = len(built.scenario.contacts) if isinstance(built, BuiltWorld) else 0
+    return 8.0 * rows_of(built) * (sum(map(_numbers_per_row, systems)) + _OF_A_CONTACT * contacts)
+
+
+def estimated_memory(built: Built | BuiltWorld, *, has_folder: bool) -> float:
+    """Return the approximate memory of a run, bytes."""
+    size, rows = estimated_bytes(built), rows_of(built)
+    if not has_folder:
+        return BASE_ALONE + PER_ROWS_ALONE * size
+    return BASE + size * (PER_ROWS + PER_RECORDED * min(1.0, MOST_RECORDED / rows))
+
+
+def check_size(built: Built | BuiltWorld, folder: Path | None) -> None:
+    """Check that the rows of a run fit into the memory and on the disk of ``folder``; warn if they are large.
+
+    Raises
+    ------
+    InputError
+        If they do not fit; the message has a value of ``record_every`` for which they do.
+    """
+    size = estimated_bytes(built)
+    if size <= FITTING:
+        return
+    needed = estimated_memory(built, has_folder=folder is not None)
+    every = _rounded_up(built.scenario.simulation.record_every * size / FITTING)
+    what = f"the run records {rows_of(built)} rows, about {_text(size)}"
+    fix = f"set simulation.record_every to {every}, which needs below 500 MB of memory"
+    free = _available_memory()
+    if free is not None and needed > free:
+        raise _too_large(f"{what}, and needs about {_text(needed)} of memory, but {_text(free)} are "
+                         f"available; {fix}", built, every)  # fmt: skip
+    if folder is not None and 2.0 * size > (space := float(shutil.disk_usage(folder).free)):
+        raise _too_large(f"{what}, and needs twice as much space on the disk of {folder}, which has "
+                         f"{_text(space)}; {fix}", built, every)  # fmt: skip
+    if size > LARGE:
+        warnings.warn(f"{what}, and needs about {_text(needed)} of memory; {fix}", stacklevel=4)
+
+
+def _numbers_per_row(built: Built) -> int:
+    """Return the number of numbers in a row of one system."""
+    names, scenario, joints = list(_ALWAYS), built.scenario, len(built.model.joints)
+    if scenario.tracked_tool is not None:
+        names += _WITH_TOOL
+        if any(True for _ in task_references(scenario)):
+            names += _WITH_REFERENCE
+    if built.orbit is not None:
+        names += _WITH_ORBIT
+    tracked = 6 * len(scenario.controllers or [])
+    loops = _OF_A_LOOP * len(built.model.loops)
+    return sum(math.prod(row_shape(name, joints)) for name in names) + tracked + loops
+
+
+def _available_memory() -> float | None:
+    """Return the memory, bytes, that programs can use without swapping; None if it is unknown."""
+    try:
+        lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
+        return 1024.0 * next(float(line.split()[1]) for line in lines if line.startswith("MemAvailable:"))
+    except (OSError, ValueError, StopIteration):
+        pass
+    try:
+        return float(os.sysconf("SC_PAGE_SIZE")) * float(os.sysconf("SC_PHYS_PAGES"))
+    except (AttributeError, ValueError, OSError):  # Windows
+        return None
+
+
+def _too_large(message: str, built: Built | BuiltWorld, every: int) -> InputError:
+    return InputError(
+        message, name="record_every", got=built.scenario.simulation.record_every, expected=f">= {every}"
+    )
+
+
+def _rounded_up(value: float) -> int:
+    """Return the smallest of 1, 2, 5, 10, 20, … that is not below a value."""
+    scale = 10 ** math.floor(math.log10(max(value, 1.0)))
+    return next(int(step * scale) for step in (1, 2, 5, 10) if step * scale >= value)
+
+
+def _text(size: float) -> str:
+    return f"{size / 1e9:.3g} GB" if size >= 1e9 else f"{size / 1e6:.3g} MB"
