@@ -81,9 +81,32 @@ fn invalid_instants_are_refused() {
         "2024-3-1T1:2:3:4 UTC",
     ] {
         let error = Epoch::parse(text).expect_err(text);
-        assert!(matches!(&error, EarthError::Epoch { text: said } if said == text), "{error}");
+        assert!(matches!(&error, EarthError::Epoch { text: said, .. } if said == text), "{error}");
     }
     assert!(matches!(Epoch::parse("1965-03-01T12:00:00 UTC"), Err(EarthError::BeforeUtc { .. })));
+}
+
+#[test]
+fn the_error_of_an_epoch_names_the_wrong_part() {
+    for (text, part) in [
+        ("2024-03-01T12:00:00", "it does not end with a time scale, which is UTC (or Z), TAI, TT or TDB"),
+        ("2024-03-01T12:00:00+01:00", "an offset from UTC is not accepted; convert it to UTC"),
+        ("2024-03-01 UTC", "is not a date and a time of the form YYYY-MM-DDThh:mm:ss.s"),
+        ("1899-03-01T12:00:00 TAI", "the year is 1899 and must be from 1900 to 2099"),
+        ("2024-13-01T12:00:00 UTC", "the month is 13 and must be from 1 to 12"),
+        ("2024-02-30T12:00:00 UTC", "the day is 30 and must be from 1 to 29 in 2024-02"),
+        ("2023-02-29T12:00:00 UTC", "the day is 29 and must be from 1 to 28 in 2023-02"),
+        ("2000-02-30T12:00:00 UTC", "from 1 to 29 in 2000-02"),
+        ("2024-04-31T12:00:00 UTC", "from 1 to 30 in 2024-04"),
+        ("2024-03-01T24:00:00 UTC", "the hour is 24 and must be from 0 to 23"),
+        ("2024-03-01T12:60:00 UTC", "the minute is 60 and must be from 0 to 59"),
+        ("2024-03-01T12:00:61 UTC", "the second is 61 and must be from 0 to 60"),
+        ("2024-03-01T12:00:60 UTC", "the second is 60 in a minute without a leap second of UTC"),
+    ] {
+        let error = Epoch::parse(text).expect_err(text).to_string();
+        assert!(error.contains(part), "{error}");
+    }
+    assert!(Epoch::parse("2024-02-29T23:59:59 UTC").is_ok(), "a leap day is accepted");
 }
 
 fn table(rows: &[[f64; 4]]) -> EarthParameters {

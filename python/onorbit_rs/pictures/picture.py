@@ -81,8 +81,9 @@ def draw_picture(
             rows = np.unique(np.linspace(0, len(points) - 1, _MOST_POINTS).astype(int))
             canvas.add_line(points[rows], np.array(_PATHS[name]), width)
     if has_collisions:
-        for face in scene.collision_faces():
-            canvas.add_line(face[[0, 1, 2, 3, 0]], np.array(_WIRE), 0.6 * width)
+        faces = scene.collision_faces()
+        ends = faces[:, [1, 2, 3, 0]]
+        canvas.add_segments(faces.reshape(-1, 3), ends.reshape(-1, 3), np.array(_WIRE), 0.6 * width)
     image = _merged(image, canvas)
     triads = [("B", camera.axes @ scene.rot_sb)]
     triads.append(("L", camera.axes) if scene.is_local else ("W", camera.axes))

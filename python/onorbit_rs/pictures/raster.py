@@ -34,9 +34,11 @@ class Canvas:
 
     def add_line(self, points: Floats, color: Floats, pixels: float) -> None:
         """Draw a line through points (k, 3), m, with a width in pixels."""
-        projected = self._camera.project(points)
-        projected[:, 2] *= _NEARER
-        start, end = projected[:-1], projected[1:]
+        self.add_segments(points[:-1], points[1:], color, pixels)
+
+    def add_segments(self, starts: Floats, ends: Floats, color: Floats, pixels: float) -> None:
+        """Draw straight lines from ``starts`` to ``ends``, (k, 3), m, with a width in pixels."""
+        start, end = (self._camera.project(points) * [1.0, 1.0, _NEARER] for points in (starts, ends))
         along = end[:, :2] - start[:, :2]
         length = np.linalg.norm(along, axis=1, keepdims=True).clip(1e-9)
         aside = np.zeros_like(start)

@@ -40,29 +40,30 @@ impl Epoch {
     /// [`EarthError::Epoch`] for any other text and for years outside 1900 to 2099;
     /// [`EarthError::BeforeUtc`] for UTC before 1972.
     pub fn parse(text: &str) -> Result<Self, EarthError> {
-        let invalid = || EarthError::Epoch { text: text.to_owned() };
-        let (fields, scale) = split_scale(text.trim()).ok_or_else(invalid)?;
-        let ([year, month, day, hour, minute, second], nanoseconds) = numbers(fields).ok_or_else(invalid)?;
+        let invalid = |fault: String| EarthError::Epoch { text: text.to_owned(), fault };
+        let (fields, scale) = split_scale(text.trim()).ok_or_else(|| invalid(without_scale(text)))?;
+        let (date, nanoseconds) = numbers(fields).ok_or_else(|| invalid(OTHER_FORM.to_owned()))?;
+        let [year, month, day, hour, minute, second] = date;
         let year = i32::from(year);
         if scale == TimeScale::UTC && YEARS.contains(&year) && year < UTC_YEAR {
             return Err(EarthError::BeforeUtc { text: text.to_owned() });
         }
+        if let Some(fault) = fault(date) {
+            return Err(invalid(fault));
+        }
+        let byte = |x: u16| u8::try_from(x).unwrap_or(u8::MAX); // fits, as checked above
         let is_leap = second == 60;
-        let byte = |x: u16| u8::try_from(x).unwrap_or(u8::MAX); // 255 is not valid in any field
         let (month, day, hour, minute) = (byte(month), byte(day), byte(hour), byte(minute));
         let second = if is_leap { 59 } else { byte(second) };
-        if !YEARS.contains(&year) || hour > 23 || second > 59 {
-            return Err(invalid());
-        }
         let instant =
             Instant::maybe_from_gregorian(year, month, day, hour, minute, second, nanoseconds, scale)
-                .map_err(|_| invalid())?
+                .map_err(|error| invalid(error.to_string()))?
                 .to_time_scale(TimeScale::TAI);
         let epoch = Self::of(instant);
         match is_leap {
             false => Ok(epoch),
             true if scale == TimeScale::UTC && epoch.after(1.0).is_leap_second() => Ok(epoch.after(1.0)),
-            true => Err(invalid()),
+            true => Err(invalid("the second is 60 in a minute without a leap second of UTC".to_owned())),
         }
     }
 
@@ -165,6 +166,45 @@ impl std::fmt::Display for Epoch {
 
 fn noon_of_2000() -> Instant {
     Instant::from_gregorian_tai_at_noon(2000, 1, 1)
+}
+
+/// Fault of a text that has a time scale, but is not a date and a time.
+const OTHER_FORM: &str =
+    "the part before the time scale is not a date and a time of the form YYYY-MM-DDThh:mm:ss.s";
+
+/// Returns the fault of a text without a time scale at its end.
+fn without_scale(text: &str) -> String {
+    let time = text.split_once(['T', ' ']).map_or("", |(_, time)| time);
+    let fault = if time.contains(['+', '-']) {
+        "an offset from UTC is not accepted; convert it to UTC"
+    } else {
+        "it does not end with a time scale, which is UTC (or Z), TAI, TT or TDB"
+    };
+    fault.to_owned()
+}
+
+/// Returns the fault of year, month, day, hour, minute and second, if one of them does not exist.
+fn fault([year, month, day, hour, minute, second]: [u16; 6]) -> Option<String> {
+    let is_leap_year = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
+    let days = match month {
+        2 => 28 + u16::from(is_leap_year),
+        4 | 6 | 9 | 11 => 30,
+        _ => 31,
+    };
+    let outside = |name, value, first, last| {
+        (value < first || value > last)
+            .then(|| format!("the {name} is {value} and must be from {first} to {last}"))
+    };
+    let in_month = || {
+        (day < 1 || day > days)
+            .then(|| format!("the day is {day} and must be from 1 to {days} in {year:04}-{month:02}"))
+    };
+    outside("year", year, YEARS.start as u16, YEARS.end as u16 - 1)
+        .or_else(|| outside("month", month, 1, 12))
+        .or_else(in_month)
+        .or_else(|| outside("hour", hour, 0, 23))
+        .or_else(|| outside("minute", minute, 0, 59))
+        .or_else(|| outside("second", second, 0, 60))
 }
 
 /// Splits a text into date and time, and time scale; `None` if it does not end with the name of a time scale.

@@ -8,12 +8,14 @@ use crate::number_text::{count, short, unlike};
 pub enum EarthError {
     /// A text does not represent an instant.
     #[error(
-        "epoch is '{text}'; expected an instant and its time scale, such as '2024-03-01T12:00:00 UTC' \
-         (or TAI, TT, TDB; Z is UTC)"
+        "epoch is '{text}', but {fault}; expected an instant and its time scale, such as \
+         '2024-03-01T12:00:00 UTC'"
     )]
     Epoch {
         /// Given text.
         text: String,
+        /// Part of the text that is wrong, and what is accepted.
+        fault: String,
     },
     /// An epoch in UTC is before 1972, when UTC adopted leap seconds.
     #[error("epoch '{text}' is before 1972, when UTC adopted leap seconds; give the epoch in TAI or TT")]

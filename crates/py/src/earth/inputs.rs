@@ -20,7 +20,8 @@ pub(super) fn epoch(epoch: Any<'_, '_>) -> PyResult<Epoch> {
     } else {
         let datetime = py.import("datetime")?;
         if !epoch.is_instance(&datetime.getattr("datetime")?)? {
-            return Err(EarthError::Epoch { text: epoch.repr()?.to_string() }.into_python(py));
+            let fault = "it is neither a text nor a datetime".to_owned();
+            return Err(EarthError::Epoch { text: epoch.repr()?.to_string(), fault }.into_python(py));
         }
         if epoch.call_method0("utcoffset")?.is_none() {
             let message = format!(

@@ -8,7 +8,7 @@ impl IntoPython for EarthError {
     fn into_python(self, py: Python<'_>) -> PyErr {
         let message = self.to_string();
         let fields = match &self {
-            Self::Epoch { text } | Self::BeforeUtc { text } => fields!(py, "name": "epoch", "got": text),
+            Self::Epoch { text, .. } | Self::BeforeUtc { text } => fields!(py, "name": "epoch", "got": text),
             Self::NeedsEpoch { what } => fields!(py, "name": what),
             Self::OutsideSpan { what, time, from, to, .. } => {
                 fields!(py, "name": what, "got": time, "expected": (from, to))
