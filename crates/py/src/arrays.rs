@@ -1,6 +1,7 @@
 //! Conversion of numbers and arrays from and to Python.
 
 use crate::errors::{fields, raise, shape_error};
+use nalgebra::Vector3;
 use numpy::{
     IxDyn, PyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods,
 };
@@ -227,6 +228,15 @@ pub(crate) fn fixed<const N: usize>(
         }
         _ => Err(wrong_shape(py, name, &shape_text(shape), input.shape())),
     }
+}
+
+/// Reads a (3,) vector; returns `default` if none is given.
+pub(crate) fn vector(
+    value: Option<&Bound<'_, PyAny>>,
+    name: &str,
+    default: [f64; 3],
+) -> PyResult<Vector3<f64>> {
+    Ok(Vector3::from(value.map_or(Ok(default), |value| fixed(value, name, &[3]))?))
 }
 
 /// Returns an error if a number is not finite; the message contains `name` and the first such number.

@@ -2,10 +2,10 @@
 
 use super::closed_loop::{PyLoop, mimic_in};
 use super::{Any, PyModel};
-use crate::arrays::fixed;
+use crate::arrays::{fixed, vector};
 use crate::errors::{IntoPython, fields, raise};
 use crate::pickling::ConstructorCall;
-use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion};
 use onorbit_core::model::{Inertial, Joint, JointKind, JointSpring, Limits, Link, Model, ModelBuilder};
 use pyo3::prelude::*;
 
@@ -244,11 +244,6 @@ pub(super) fn rigid_body(py: Python<'_>, mass: f64, inertia: Any<'_, '_>) -> PyR
     let rows: Vec<&[f64]> = numbers.chunks(3).collect();
     let keywords = fields!(py, "mass": mass, "inertia": rows);
     PyModel::wrap(py, model, Some(ConstructorCall::with_keywords("Model.rigid_body", &keywords)?), &[])
-}
-
-/// Reads a (3,) vector; returns `default` if none is given.
-pub(super) fn vector(value: Option<Any<'_, '_>>, name: &str, default: [f64; 3]) -> PyResult<Vector3<f64>> {
-    Ok(Vector3::from(value.map_or(Ok(default), |value| fixed(value, name, &[3]))?))
 }
 
 /// Reads a pose from a position, m, and roll, pitch, yaw, rad; both are zero by default.

@@ -1,10 +1,10 @@
 //! Changes to the inertial properties of links, read from Python arguments.
 
-use super::builder::vector;
+use super::merged_call::merged_call;
 use super::{Any, PyModel};
-use crate::arrays::{fixed, type_name};
+use crate::arrays::{fixed, type_name, vector};
 use crate::errors::{IntoPython, fields, raise};
-use crate::pickling::{ConstructorCall, deep_copy};
+use crate::pickling::deep_copy;
 use nalgebra::Matrix3;
 use onorbit_core::model::LinkChange;
 use pyo3::prelude::*;
@@ -23,31 +23,8 @@ pub(super) fn with_link(
     let old = &model.get().model;
     let new = old.with_link(&change).map_err(|error| error.into_python(py))?;
     let keywords = fields!(py, "mass": mass, "com": deep_copy(com)?, "inertia": deep_copy(inertia)?);
-    let call = call_of_with_link(model, name, keywords)?;
+    let call = merged_call(model, "Model.with_link", name, keywords)?;
     PyModel::wrap(py, new, Some(call), old.warnings())
-}
-
-/// Returns the call that reconstructs `model.with_link(name, **keywords)`. Successive changes of one link are
-/// merged into a single call, so that intermediate models do not remain in memory.
-fn call_of_with_link(
-    model: &Bound<'_, PyModel>,
-    name: &str,
-    keywords: Bound<'_, PyDict>,
-) -> PyResult<ConstructorCall> {
-    let py = model.py();
-    let call = model.get().constructor_call.as_ref();
-    let call = call.map(|call| call.arguments_of(py, "Model.with_link")).transpose()?;
-    if let Some((arguments, earlier)) = call.flatten() {
-        let (origin, link): (Bound<'_, PyAny>, String) = arguments.extract()?;
-        if link == name {
-            let merged = earlier.copy()?;
-            for (key, value) in keywords.iter().filter(|(_, value)| !value.is_none()) {
-                merged.set_item(key, value)?;
-            }
-            return ConstructorCall::new("Model.with_link", (origin, name), &merged);
-        }
-    }
-    ConstructorCall::new("Model.with_link", (model, name), &keywords)
 }
 
 /// Converts the arguments of `with_link`: `mass`, kg; `com` (3,), m; `inertia` (3, 3), kg m².

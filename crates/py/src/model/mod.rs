@@ -16,6 +16,7 @@ mod joint_change;
 mod kinematics;
 mod link_change;
 mod loop_dynamics;
+mod merged_call;
 mod momentum;
 mod part;
 mod properties;
