@@ -104,7 +104,7 @@ def test_no_port_is_open_without_a_cluster(monkeypatch: pytest.MonkeyPatch) -> N
 
 
 def test_a_cluster_that_does_not_answer_is_an_error(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr("onorbit_rs.campaigns.on_dask._CONNECT_S", 1.0)
+    monkeypatch.setattr("onorbit_rs.campaigns.on_dask._CONNECT_S", 0.3)
     with pytest.raises(CampaignError, match=r"no Dask scheduler answers at tcp://127\.0\.0\.1:9") as caught:
         oo.campaign(spin(), tmp_path, cluster="tcp://127.0.0.1:9")
     assert caught.value.reason == "no cluster"

@@ -119,6 +119,7 @@ def test_the_report_shows_success_sensitivities_and_reasons(tmp_path: Path) -> N
     assert min(shown) >= significant_correlation(24)
 
 
+@pytest.mark.usefixtures("no_campaign_report")
 def test_cases_without_success_are_kept_in_full(tmp_path: Path) -> None:
     rotation = sorted(oo.campaign(spin(4))["base_rotation_max_rad"].to_pylist())
     success = {"base_rotation_max_rad": {"below": rotation[-1]}}
