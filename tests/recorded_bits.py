@@ -21,6 +21,10 @@ MOST_STEPS = 500
 """Steps of each scenario with one robot; those with several systems run to their ends, through all events."""
 
 
+MISSED = {("docking_misses", "docked")}
+"""Events of scenarios that show that they do not happen."""
+
+
 def in_baseline() -> dict[str, dict[str, str]]:
     """Compute the digests in a separate process that uses only the baseline instruction set."""
     environment = os.environ | {"ONORBIT_INSTRUCTION_SET": "baseline"}
@@ -70,7 +74,7 @@ def _of_world(name: str) -> dict[str, str]:
     assert isinstance(scenario, WorldScenario)
     trace: Any = build_world(scenario).simulation.run(scenario.simulation.duration)
     assert [event.name for event in trace.events if event.kind in ("capture", "release")] == [
-        event.name for event in scenario.events
+        event.name for event in scenario.events if (name, event.name) not in MISSED
     ]
     return {column: _digest(values) for column, values in sorted(world_arrays(trace).items())}
 

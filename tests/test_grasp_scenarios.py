@@ -11,6 +11,7 @@ import pytest
 import onorbit_rs as oo
 from onorbit_rs import scenarios
 from onorbit_rs.exceptions import OnOrbitError
+from onorbit_rs.output.read import read_summary
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build_world import build_world
 
@@ -80,6 +81,59 @@ def test_docking_gear_centres_and_latches(name: str, contact: str, frames: tuple
     first = places[np.searchsorted(run.trace["chaser"].time, touched["first_touch_down_s"])]
     assert np.linalg.norm(first[:2]) > 0.02  # beside the axis at the touch-down
     assert np.linalg.norm(places[-1]) < 1e-9
+
+
+def test_a_grasp_slips_off_and_the_second_attempt_holds() -> None:
+    """Friction of at most `2 μ N` accelerates the target; the latch closes 8 s after both pads touch."""
+    run = oo.run("grasp_slips", quiet=True)
+    assert run.summary["certificate_passed"] and not run.summary["warnings"]
+    assert not run.summary["systems"]["servicer"]["joint_rates_exceeded"]
+    (latch,) = run.summary["latches"]
+    offs = [event["time_s"] for event in kinds(run, "lift_off")]
+    assert latch["parted_s"] == max(offs) and 11.0 < latch["parted_s"] < 15.0  # during the retreat
+    downs = [event["time_s"] for event in kinds(run, "touch_down")]
+    assert abs(latch["time_s"] - max(downs) - 8.0) < 0.05
+    places = relative(run, "servicer", "grasp", "target", "probe_tip")
+    time = np.asarray(run.trace["servicer"].time)
+    assert np.linalg.norm(places[np.searchsorted(time, latch["parted_s"])]) > 0.05  # beyond the fingertips
+    target = run.trace["target"]
+    mass, momentum = run.models["target"].mass, np.asarray(target.momentum)[:, :3]
+    slipping = (time > 11.0) & (time < latch["parted_s"])
+    rates = np.linalg.norm(np.diff(momentum[slipping], axis=0), axis=1)
+    steps = np.diff(time[slipping])
+    forces = rates[steps > 1e-3] / steps[steps > 1e-3]
+    assert 2.0 < np.median(forces) < 2.0 * 0.5 * 4.0 * 1.1  # N
+    assert mass > 500.0 and latch["parted_speed_m_s"] > 0.01
+
+
+def test_a_stronger_grip_does_not_slip_off(tmp_path: Path) -> None:
+    strong = changed(
+        "grasp_slips", tmp_path, ("force: 4 N", "force: 40 N"), ("duration: 38 s", "duration: 15 s")
+    )
+    with pytest.warns(UserWarning, match="did not happen"):
+        run = oo.run(strong, quiet=True)
+    touching = kinds(run, "touch_down", "lift_off")
+    assert not [event for event in touching if event["time_s"] > 9.0]
+    assert run.summary["latches"][0]["parted_s"] is None
+
+
+@pytest.mark.filterwarnings("ignore:event 'docked' did not happen:UserWarning")
+def test_a_missed_latch_pushes_the_target_away(tmp_path: Path) -> None:
+    run = oo.run("docking_misses", out=tmp_path / "out", quiet=True, figures=False, recording=False)
+    assert read_summary(tmp_path / "out")["latches"] == run.summary["latches"]
+    assert run.summary["certificate_passed"] and not kinds(run, "capture")
+    (latch,) = run.summary["latches"]
+    assert latch["time_s"] is None and latch["nearest_m"] > 0.01
+    assert latch["parted_s"] == max(event["time_s"] for event in kinds(run, "lift_off"))
+    velocity = [
+        np.diff(np.asarray(run.trace[name].center_of_mass)[[-20, -1]], axis=0)[0]
+        / (run.trace[name].time[-1] - run.trace[name].time[-20])
+        for name in ("chaser", "target")
+    ]
+    # the speed from positions at the end agrees with that from momenta after the parting
+    assert np.linalg.norm(velocity[1] - velocity[0]) == pytest.approx(latch["parted_speed_m_s"], rel=0.02)
+    closed = oo.run("docking_probe_drogue", quiet=True).summary["latches"][0]
+    assert closed["time_s"] is not None and closed["nearest_m"] < 0.01
 
 
 def changed(name: str, tmp_path: Path, *pairs: tuple[str, str]) -> Path:

@@ -47,11 +47,18 @@ def test_every_check_of_the_certificate_applies_and_passes(bundled: oo.Run) -> N
     assert bundled.summary["certificate_passed"], bundled.summary["certificate_failures"]
 
 
+MISSES = {
+    "docking_misses": "event 'docked' did not happen before the end of the run; check its condition 'when'"
+}
+"""The warning of each bundled world whose latch is not met on purpose."""
+
+
 @pytest.mark.parametrize("name", WORLDS)
+@pytest.mark.filterwarnings("ignore:event 'docked' did not happen:UserWarning")
 def test_every_system_of_a_bundled_world_is_certified(name: str) -> None:
     summary = oo.run(name, quiet=True).summary
     assert summary["certificate_passed"], summary["certificate_failures"]
-    assert summary["certificate_complete"] and not summary["warnings"]
+    assert summary["certificate_complete"] and summary["warnings"] == MISSES.get(name, "")
 
 
 def test_a_servicer_captures_a_tumbling_target_and_releases_it_at_rest() -> None:

@@ -88,6 +88,7 @@ def _print_world(console: Console, summary: dict[str, Any], systems: dict[str, A
     """Print the events, the contacts, each system, and the certificate of the world."""
     _print_events(console, [event for event in summary["events"] if event["kind"] not in OF_CONTACT])
     _print_contacts(console, summary.get("contacts", ()))
+    _print_latches(console, summary.get("latches", ()))
     for name, system in systems.items():
         console.print(f"[bold]{text(name)}[/bold]:", soft_wrap=True)
         _print_run(console, {key: value for key, value in system.items() if key not in _OF_THE_RUN})
@@ -126,6 +127,24 @@ def _print_contacts(console: Console, contacts: Sequence[dict[str, Any]]) -> Non
         totals = (_formatted(contact[key], unit) for key, unit in _TOTALS)
         begun = "never" if first is None else _formatted(first, "s")
         table.add_row(*map(text, (contact["name"], str(contact["touches"]), begun, *totals)))
+    print_table(console, table)
+
+
+def _print_latches(console: Console, latches: Sequence[dict[str, Any]]) -> None:
+    """Print a table of the results of the latches, with the last separation before each capture."""
+    if not latches:
+        return
+    table = new_table("latch", "result", "nearest", "at", "parted", "relative speed", "spin")
+    for latch in latches:
+        result = "not met" if latch["time_s"] is None else "closed"
+        values = (
+            "" if latch[key] is None else _formatted(latch[key], unit)
+            for key, unit in (
+                ("nearest_m", "m"), ("nearest_s", "s"), ("parted_s", "s"), ("parted_speed_m_s", "m/s"),
+                ("parted_spin_rad_s", "rad/s"),
+            )
+        )  # fmt: skip
+        table.add_row(*map(text, (latch["name"], result, *values)))
     print_table(console, table)
 
 

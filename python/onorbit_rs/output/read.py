@@ -298,9 +298,9 @@ def _checked_world(summary: dict[str, Any]) -> dict[str, Any]:
     """Return the summary of a run with several systems after checking the types of its parts."""
     for system in summary["systems"].values():
         _checked(system)
-    lists = ("events", "certificate", "contacts")
+    lists = ("events", "certificate", "contacts", "latches")
     for part in lists:
-        rows = summary.get(part, [] if part == "contacts" else None)
+        rows = summary.get(part, [] if part in ("contacts", "latches") else None)
         if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
             raise TypeError(f"{part} is {_brief(rows)}; expected a list of mappings")
     _checked({key: value for key, value in summary.items() if key not in ("systems", *lists)})

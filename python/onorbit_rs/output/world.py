@@ -11,6 +11,7 @@ from onorbit_rs.common.event_kinds import OF_CONTACT
 from onorbit_rs.common.printable import json_value
 from onorbit_rs.output.checks import CHECKS
 from onorbit_rs.output.contact_totals import contact_totals
+from onorbit_rs.output.latches import latch_results
 from onorbit_rs.output.pickling import arrays_of
 from onorbit_rs.output.saved_world import EVENTS
 from onorbit_rs.output.summary import Summary, run_numbers, summarize
@@ -28,7 +29,8 @@ def summarize_world(trace: WorldTrace, built: BuiltWorld, *, status: str = "comp
 
     ``systems`` contains the summary of each system; ``certificate`` the checks of the events and of the
     groups of systems that events may connect; ``events`` the events that happened; ``contacts`` the totals
-    of the contacts. ``certificate_passed`` is True if no check of a system, group or event failed.
+    of the contacts; ``latches`` the results of the latches. ``certificate_passed`` is True if no check of a
+    system, group or event failed.
     """
     scenario = built.scenario
     systems = {name: summarize(trace[name], alone, status=status) for name, alone in built.systems.items()}
@@ -50,6 +52,7 @@ def summarize_world(trace: WorldTrace, built: BuiltWorld, *, status: str = "comp
         "certificate": [_check(*row) for row in rows],
         "events": [_event(record) for record in trace.events],
         "contacts": contact_totals(trace),
+        "latches": latch_results(trace, built),
         "systems": systems,
     }
 

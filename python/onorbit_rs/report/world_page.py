@@ -19,7 +19,7 @@ from onorbit_rs.report.page import (
 )
 from onorbit_rs.report.template import Picture, figure_html
 
-_PARTS = ("events", "contacts", "systems", "certificate")
+_PARTS = ("events", "contacts", "latches", "systems", "certificate")
 """Entries of the summary of a world that are shown outside the tables of numbers."""
 
 _COLUMNS = ("time_s", "impulse_ns", "angular_impulse_nms", "energy_lost_j", "linear_momentum_error_rel",
@@ -30,6 +30,18 @@ _HEADS = ("event", "kind", "systems", "time", "impulse", "angular impulse", "ene
 _TOTALS = ("first_touch_down_s", "normal_force_max_n", "impulse_ns", "dissipated_j", "gap_min_m")
 _TOTALS_HEADS = ("contact", "touches", "first touch-down", "largest normal force", "impulse",
                  "energy dissipated", "smallest gap")  # fmt: skip
+
+_LATCH = (
+    "time_s",
+    "nearest_m",
+    "nearest_rad",
+    "nearest_s",
+    "parted_s",
+    "parted_speed_m_s",
+    "parted_spin_rad_s",
+)
+_LATCH_HEADS = ("latch", "closed", "smallest distance", "angle then", "time then", "parted", "relative speed",
+                "angular rate")  # fmt: skip
 
 _OF_THE_ORBIT = ("inertial_axes", "velocity_eci_source", "gravity_mode")
 """Entries of a system's summary that describe the common orbit, and are therefore shown once."""
@@ -54,6 +66,7 @@ def world_page(
     events = [event for event in summary["events"] if event["kind"] not in OF_CONTACT]
     parts = [] if contacts and not events else [_events(events)]
     parts += [_contacts(contacts)] if contacts else []
+    parts += [_latches(latches)] if (latches := summary.get("latches", ())) else []
     parts.append(numbers_section("All systems", groups(own)))
     for name, system in systems.items():
         alone = {key: value for key, value in system.items() if key not in own}
@@ -101,6 +114,27 @@ def _total_cells(contact: dict[str, Any]) -> Iterator[str]:
             continue
         entry = row(key, contact[key])
         yield f"<td>{data_html(entry._replace(key=_path(contact, key)))} {escape(entry.unit)}</td>"
+
+
+def _latches(latches: Sequence[dict[str, Any]]) -> str:
+    """Return an HTML table of the results of the latches."""
+    about = (
+        "The distance and the angle are those between the frames. The systems parted when all contacts "
+        "between them had ended, for the last time before the capture. The relative speed is that of their "
+        "centers of mass, the angular rate that of the captured system."
+    )
+    return _table("Latches", about, _LATCH_HEADS, map(_latch_cells, latches))
+
+
+def _latch_cells(latch: dict[str, Any]) -> Iterator[str]:
+    """Yield the cells of a latch's table row as HTML."""
+    yield f"<td>{escape(latch['name'])}</td>"
+    for key in _LATCH:
+        if latch[key] is None:
+            yield f"<td>{'not met' if key == 'time_s' else '–'}</td>"
+            continue
+        entry = row(key, latch[key])._replace(key=f"latches/{latch['name']}/{key}")
+        yield f"<td>{data_html(entry)} {escape(entry.unit)}</td>"
 
 
 def _path(contact: dict[str, Any], key: str) -> str:
