@@ -77,7 +77,7 @@ def workers() -> list[psutil.Process]:
 
 def test_controllers_in_python_run_in_processes(tmp_path: Path) -> None:
     campaign = campaign_of(with_law(tmp_path), SPIN, 3)
-    table = oo.campaign(campaign, workers=2)
+    table = oo.campaign(campaign, workers=1)
     assert table["status"].to_pylist() == ["complete"] * 3
     run = oo.campaign_case(campaign, 1)
     assert run.summary["base_rotation_max_rad"] == table["base_rotation_max_rad"][1].as_py()

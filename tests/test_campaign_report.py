@@ -22,6 +22,7 @@ from onorbit_rs.campaigns.statistics import (
     significant_correlation,
     wilson,
 )
+from onorbit_rs.simulation import finish
 
 
 @pytest.mark.parametrize("successes", [0, 1, 17, 99, 100])
@@ -120,13 +121,16 @@ def test_the_report_shows_success_sensitivities_and_reasons(tmp_path: Path) -> N
 
 
 @pytest.mark.usefixtures("no_campaign_report")
-def test_cases_without_success_are_kept_in_full(tmp_path: Path) -> None:
+def test_cases_without_success_are_kept_in_full(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn = []  # drawing takes most of the time of a run with a folder
+    monkeypatch.setattr(finish, "write_pictures", lambda *_, **__: drawn.append(True))
     rotation = sorted(oo.campaign(spin(4))["base_rotation_max_rad"].to_pylist())
     success = {"base_rotation_max_rad": {"below": rotation[-1]}}
     table = oo.campaign(spin(4, success=success, keep={"failures": "full"}), tmp_path)
     (bad,) = [row["case"] for row in table.to_pylist() if not row["success"]]
     assert [folder.name for folder in (tmp_path / "failures").iterdir()] == [f"case_{bad}"]
-    assert (tmp_path / "failures" / f"case_{bad}" / "run.rrd").exists()
+    assert (tmp_path / "failures" / f"case_{bad}" / "trace.npz").exists()
+    assert drawn == [True], "figures and recording of this case alone"
 
 
 def test_the_bundled_campaign_is_valid() -> None:
