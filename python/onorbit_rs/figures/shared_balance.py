@@ -37,6 +37,9 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 
+SMALLEST = 1e-12
+"""Smallest energy lost in events, J, that is drawn."""
+
 _FOR_LABELS = 0.45
 """Space for the labels of the bars, as multiples of the length of the longest bar."""
 MOST_EVENTS = 12
@@ -93,11 +96,15 @@ def energy_exchange(trace: WorldTrace, systems: Sequence[str], events: Sequence[
 def _draw_losses(axes: Axes, events: Sequence[EventMark]) -> None:
     """Draw a bar for the energy that each event removed or added."""
     lost = np.array([event.energy_lost for event in events])
-    factor, unit = with_prefix(float(np.abs(lost).max(initial=0.0)), "J")
+    largest = float(np.abs(lost).max(initial=0.0))
+    if 0.0 < largest < SMALLEST:
+        # a capture of frames at relative rest
+        lost, largest = np.zeros_like(lost), 0.0
+    factor, unit = with_prefix(largest, "J")
     colors = [COLORS[0] if value < 0.0 else COLORS[1] for value in lost]
     axes.barh(np.arange(len(events)), factor * lost, height=0.5, color=colors)
     for row, value in enumerate(lost):
-        text = f"{amount(abs(value), 'J')} {'added' if value < 0.0 else 'lost'}"
+        text = f"{amount(abs(value), 'J')} {'added' if value < 0.0 else 'lost'}" if largest else "below 1 pJ"
         axes.annotate(text, (max(factor * value, 0.0), row), xytext=(3, 0), textcoords="offset points",
                       fontsize=SMALL, color=INK, va="center")  # fmt: skip
     axes.axvline(0.0, color=INK, linewidth=0.6)

@@ -19,6 +19,7 @@ from onorbit_rs.output.summary import Summary, run_numbers, summarize
 if TYPE_CHECKING:
     from onorbit_rs._core import EventRecord, WorldTrace
     from onorbit_rs.scenario.build_world import BuiltWorld
+    from onorbit_rs.scenario.events import Event
 
 WORLD_COLUMNS = ("time", "momentum", "kinetic_energy")
 """Names of the columns that describe all systems together."""
@@ -60,14 +61,26 @@ def summarize_world(trace: WorldTrace, built: BuiltWorld, *, status: str = "comp
 def _missed(trace: WorldTrace, built: BuiltWorld) -> list[str]:
     """Issue a warning for each event that did not happen, and return the warnings."""
     happened = {record.name for record in trace.events if record.kind not in OF_CONTACT}
+    latches = {latch["name"]: latch for latch in latch_results(trace, built)}
     found = [
-        f"event {event.name!r} did not happen before the end of the run; check its condition 'when'"
+        f"event {event.name!r} did not happen before the end of the run; {_reason(event, latches)}"
         for event in built.scenario.events
         if event.name not in happened
     ]
     for message in found:
         warnings.warn(message, stacklevel=2)
     return found
+
+
+def _reason(event: Event, latches: dict[str, Summary]) -> str:
+    """Return what an event that did not happen lacked."""
+    if event.when.latch is None or event.name not in latches:
+        return "check its condition 'when'"
+    found, (distance, angle) = latches[event.name], event.when.latch.within
+    return (
+        f"its latch was not met: the smallest distance of the frames was {found['nearest_m']:.3g} m, "
+        f"at an angle of {found['nearest_rad']:.3g} rad; within is {distance:.3g} m, {angle:.3g} rad"
+    )
 
 
 def _check(name: str, value: float | None, gate: float, passed: bool) -> Summary:
