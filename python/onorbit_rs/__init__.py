@@ -111,6 +111,7 @@ if TYPE_CHECKING:
     from onorbit_rs import engines, layouts, ros2
     from onorbit_rs.campaigns.run import campaign, campaign_case
     from onorbit_rs.clearance import Clearance, KeepOut, MinimumDistance, Violation, clearances
+    from onorbit_rs.figures.plot import plot
     from onorbit_rs.scenario import Scenario, WorldScenario
     from onorbit_rs.simulation.batch import run_batch
     from onorbit_rs.simulation.command_format import read_commands
@@ -220,6 +221,7 @@ __all__ = [
     "engines",
     "exceptions",
     "layouts",
+    "plot",
     "propagate",
     "read_commands",
     "read_run",
@@ -242,7 +244,7 @@ _LAZY = {
     "compare": "tools.comparison", "Scenario": "scenario", "WorldScenario": "scenario",
     "CommandLog": "simulation.commands", "campaign": "campaigns.run", "campaign_case": "campaigns.run",
     "read_commands": "simulation.command_format", "replay_commands": "simulation.replay",
-    "Run": "simulation.run", "resume": "simulation.run", "run": "simulation.run",
+    "plot": "figures.plot", "Run": "simulation.run", "resume": "simulation.run", "run": "simulation.run",
     "run_batch": "simulation.batch", "RecordedRun": "tables", "read_run": "tables",
 }  # fmt: skip
 """Module of each name that is imported on first access, since importing numpy and pydantic takes 0.5 s."""
@@ -288,6 +290,24 @@ def _reduced_loop(loop: LoopTrace) -> tuple[Any, ...]:
 
     return reduced_loop(loop)
 
+
+def _model_html(model: Model) -> str | None:
+    """Return the tree of a robot for notebooks; imported on first use, as everything that shows an object."""
+    from onorbit_rs.displays import model_html, or_plain
+
+    return or_plain(model_html, model)
+
+
+def _trace_png(trace: Trace | WorldTrace) -> bytes | None:
+    """Return a plot of a trace for notebooks."""
+    from onorbit_rs.displays import or_plain, trace_png
+
+    return or_plain(trace_png, trace)
+
+
+Model._repr_html_ = _model_html  # type: ignore[attr-defined]
+Trace._repr_png_ = _trace_png  # type: ignore[attr-defined]
+WorldTrace._repr_png_ = _trace_png  # type: ignore[attr-defined]
 
 copyreg.pickle(Trace, _reduced)
 copyreg.pickle(LoopTrace, _reduced_loop)

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from onorbit_rs._core import Model, Trace, WorldTrace
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Run:
     """Results of a run.
 
@@ -71,6 +71,20 @@ class Run:
     out: Path | None
     _ran: Model | dict[str, Model] | None = field(default=None, repr=False, compare=False)
     """Loaded robots; None after unpickling."""
+
+    def __repr__(self) -> str:
+        """Return scenario, number of rows, status, verdict of the certificate and folder."""
+        passed = self.summary.get("certificate_passed")
+        verdict = "" if passed is None else f", certificate {'passed' if passed else 'failed'}"
+        where = "" if self.out is None else f", in {self.out}"
+        name, status = self.summary.get("scenario"), self.summary.get("status")
+        return f"<Run {name!r}: {len(self.trace)} rows, {status}{verdict}{where}>"
+
+    def _repr_html_(self) -> str | None:
+        """Return a small report for notebooks."""
+        from onorbit_rs.displays import or_plain, run_html
+
+        return or_plain(run_html, self)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Return the data to pickle, without the robot: a ``Pool`` hangs if unpickling raises an error."""

@@ -14,6 +14,8 @@ from onorbit_rs.output.columns import split_path
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from onorbit_rs._core import Model
+
     Floats = NDArray[np.float64]
 
 XYZ, XYZW = ("x", "y", "z"), ("x", "y", "z", "w")
@@ -26,6 +28,12 @@ class Names:
     joints: Sequence[str] = ()
     bodies: Sequence[str] = ()
     joint_units: Sequence[str] = ()
+
+    @classmethod
+    def of(cls, model: Model) -> Names:
+        """Return the names and units of a robot."""
+        units = ["m" if joint.kind == "prismatic" else "rad" for joint in model.joints]
+        return cls(model.joint_names, model.body_names, units)
 
 
 @dataclass(frozen=True)

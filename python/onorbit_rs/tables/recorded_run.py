@@ -151,9 +151,7 @@ class RecordedRun:
         prefix = f"{system}/" if system else ""
         joints = self._names.get(f"{prefix}joint_names", [])
         model = self._models.get(system or "")
-        units = (
-            [] if model is None else ["m" if joint.kind == "prismatic" else "rad" for joint in model.joints]
-        )
+        units = [] if model is None else Names.of(model).joint_units
         return Names(joints, self._names.get(f"{prefix}body_names", []), units)
 
     def _checked(self, system: str | None) -> str:

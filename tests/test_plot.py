@@ -1,0 +1,69 @@
+"""Plots of any columns, and what notebooks show of models, runs and traces."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import onorbit_rs as oo
+
+
+@pytest.fixture(scope="module")
+def reach(tmp_path_factory: pytest.TempPathFactory) -> oo.Run:
+    out = tmp_path_factory.mktemp("plot") / "out"
+    changes = {"simulation.duration": 0.05}
+    return oo.run("humanoid_reach", changes=changes, out=out, quiet=True, figures=False, recording=False)
+
+
+def test_a_plot_has_the_values_units_and_names_of_joints(reach: oo.Run) -> None:
+    joint = reach.model.joint_names[2]
+    axes = oo.plot(reach, f"tau/{joint}").axes[0]
+    assert axes.get_ylabel() == f"tau/{joint} [N m]"
+    np.testing.assert_array_equal(axes.lines[0].get_ydata(), reach.trace.tau[:, 2])
+
+
+def test_wildcards_groups_and_folders_select_the_same(reach: oo.Run) -> None:
+    for source in (reach, oo.read_run(reach.out)):
+        for column in ("q/position", "q/posit*/*"):
+            legend = oo.plot(source, column).axes[0].get_legend()
+            assert [text.get_text() for text in legend.get_texts()] == ["x", "y", "z"]
+
+
+def test_one_panel_per_unit_and_a_default(reach: oo.Run) -> None:
+    assert [axes.get_ylabel() for axes in oo.plot(reach).axes] == ["q/position [m]", "q/joints [rad]"]
+    axes = oo.plot(reach, "kinetic_energy", "v").axes
+    assert [one.get_xlabel() for one in axes] == ["", "", "time [s]"]
+
+
+def test_a_misspelt_column_names_the_nearest(reach: oo.Run) -> None:
+    with pytest.raises(oo.exceptions.InputError, match=r"'q/positon'; did you mean 'q/position'"):
+        oo.plot(reach, "q/positon")
+    with pytest.raises(oo.exceptions.InputError, match="cannot plot int"):
+        oo.plot(3)  # type: ignore[arg-type]
+
+
+def test_a_model_shows_its_tree(reach: oo.Run) -> None:
+    shown = reach.model._repr_html_()
+    for name in (*reach.model.joint_names, *reach.model.body_names):
+        assert name in shown
+
+
+def test_html_escapes_the_text_of_users() -> None:
+    text = '<robot name="&lt;script&gt;"><link name="a&lt;b"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>'  # noqa: E501
+    shown = oo.Model.from_urdf_string(text)._repr_html_()
+    assert "<script>" not in shown and "&lt;script&gt;" in shown and "a&lt;b" in shown
+
+
+def test_a_run_shows_its_certificate_in_small(reach: oo.Run) -> None:
+    assert repr(reach).startswith("<Run 'humanoid_reach': ") and len(repr(reach)) < 250
+    assert "linear momentum drift" in reach._repr_html_() and "passed" in reach._repr_html_()
+
+
+def test_a_trace_shows_itself_and_a_failure_falls_back(
+    reach: oo.Run, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    assert reach.trace._repr_png_().startswith(b"\x89PNG")
+    monkeypatch.setattr("onorbit_rs.figures.plot.lines_of", lambda _: 1 / 0)
+    assert reach.trace._repr_png_() is None
