@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 import onorbit_rs as oo
+from onorbit_rs.scenario import load
+from onorbit_rs.scenario.build import build
 
 
 @pytest.fixture(scope="module")
@@ -67,3 +69,18 @@ def test_a_trace_shows_itself_and_a_failure_falls_back(
     assert reach.trace._repr_png_().startswith(b"\x89PNG")
     monkeypatch.setattr("onorbit_rs.figures.plot.lines_of", lambda _: 1 / 0)
     assert reach.trace._repr_png_() is None
+
+
+def test_every_public_class_of_the_engine_has_a_repr() -> None:
+    classes = [found for name in oo.__all__ if isinstance(found := getattr(oo, name), type)]
+    without = {found.__name__ for found in classes if found.__repr__ is object.__repr__}
+    assert without <= {"Controller", "CommandLog"} and len(classes) > 50
+
+
+def test_a_repr_has_the_arguments_or_the_numbers() -> None:
+    assert repr(oo.JointHold([0.1, 0.2])) == "JointHold(q=[0.1, 0.2])"
+    assert repr(oo.JointHold(np.zeros(9))) == "JointHold(q=array(9,))"
+    simulation = build(load("humanoid_reach")).simulation
+    assert repr(simulation).startswith("<Simulation: integrator 'rk4'")
+    for shown in (simulation, oo.ModelBuilder("a", base="b", mass=1.0, inertia=np.eye(3).tolist())):
+        assert "object at 0x" not in repr(shown) and len(repr(shown)) < 250

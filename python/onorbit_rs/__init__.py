@@ -305,6 +305,17 @@ def _trace_png(trace: Trace | WorldTrace) -> bytes | None:
     return or_plain(trace_png, trace)
 
 
+def _plain(shown: object) -> str:
+    """Return the class of an object with the arguments it was built with."""
+    from onorbit_rs.displays.plain import plain
+
+    return plain(shown)
+
+
+for _class in [found for found in globals().values() if isinstance(found, type)]:
+    if _class.__module__ == "onorbit_rs" and vars(object)["__repr__"] is _class.__repr__:
+        _class.__repr__ = _plain  # type: ignore[assignment]
+
 Model._repr_html_ = _model_html  # type: ignore[attr-defined]
 Trace._repr_png_ = _trace_png  # type: ignore[attr-defined]
 WorldTrace._repr_png_ = _trace_png  # type: ignore[attr-defined]

@@ -1,0 +1,53 @@
+"""Short ``repr`` of classes of the engine: the class with its constructor's arguments, or its attributes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+_MOST = 60
+"""Largest number of characters of one argument."""
+
+
+def plain(shown: Any) -> str:
+    """Return ``Circle(radius=0.2, …)`` for an object that remembers its arguments, otherwise ``<Circle …>``.
+
+    Long arguments are replaced by their shape or shortened.
+    """
+    name = type(shown).__name__
+    try:
+        arguments, keywords = _arguments(shown.__reduce__())
+    except Exception:  # objects that cannot be pickled, such as views of a running simulation
+        return f"<{name}{_sizes(shown)}>"
+    parts = [_short(value) for value in arguments]
+    parts += [f"{key}={_short(value)}" for key, value in keywords.items() if value is not None]
+    return f"{name}({', '.join(parts)})"
+
+
+def _arguments(reduced: Any) -> tuple[tuple[Any, ...], dict[str, Any]]:
+    """Return positional and keyword arguments of the constructor call in a pickle; raises without one."""
+    _, packed = reduced[:2]
+    (_, arguments, keywords) = packed
+    return tuple(arguments), dict(keywords or {})
+
+
+def _short(value: Any) -> str:
+    shape = getattr(value, "shape", None)
+    if shape is not None and getattr(value, "size", 0) > 6:
+        return f"array{tuple(shape)}"
+    text = repr(value.tolist() if shape is not None and hasattr(value, "tolist") else value)
+    text = " ".join(text.split())
+    return text if len(text) <= _MOST else f"{text[: _MOST // 2]}…{text[-_MOST // 4 :]}"
+
+
+def _sizes(shown: Any) -> str:
+    """Return the numbers, texts and shapes of arrays among the attributes, ``: inertia (6, 6)``."""
+    found = []
+    for name in dir(type(shown)):
+        try:
+            value = None if name.startswith("_") else getattr(shown, name)
+        except Exception:  # an attribute that does not apply is not shown
+            continue
+        shape = getattr(value, "shape", None)
+        if shape or isinstance(value, (int, float, str)):
+            found.append(f"{name} {tuple(shape) if shape else _short(value)}")
+    return f": {', '.join(found)}" if found else ""
