@@ -21,9 +21,8 @@ from onorbit_rs.robots.expand import expand
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build import build
 from onorbit_rs.scenario.control import PythonController
-from onorbit_rs.scenario.control.python_object import create_controller
-from onorbit_rs.scenario.control.python_source import inspect_source
 from onorbit_rs.scenario.csv_table import read_table
+from onorbit_rs.scenario.user_code import create_object, inspect_source
 from onorbit_rs.scenario.yaml_lines import read_yaml
 from onorbit_rs.tools.interop import onorbitros
 
@@ -50,7 +49,7 @@ READERS: dict[str, Callable[[Path], Any]] = {
     "controller": lambda path: inspect_source(
         PythonController(kind="python", file=str(path), **MINE), Path()
     ),
-    "controller to run": lambda path: create_controller(
+    "controller to run": lambda path: create_object(
         PythonController(kind="python", file=str(path), **MINE), Path()
     ),
     "gravity field": lambda path: oo.GravityField.from_gfc(path),

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime
 from os import PathLike
-from typing import Any, Literal, Protocol, TypedDict, final, overload
+from typing import Any, Literal, Protocol, Self, SupportsIndex, TypedDict, final, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -65,6 +65,7 @@ __all__ = [
     "MU_EARTH",
     "Atmosphere",
     "Body",
+    "BodyStates",
     "BodyWrench",
     "Brake",
     "Cannonball",
@@ -787,7 +788,27 @@ class FixedFrame(Orbit):
 
 @disjoint_base
 class Effect:
-    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
+    def __new__(cls, *arguments: Any, **keywords: Any) -> Self: ...
+    def __reduce_ex__(self, protocol: SupportsIndex) -> Any: ...
+
+@final
+class BodyStates:
+    @property
+    def names(self) -> list[str]: ...
+    @property
+    def mass(self) -> _Array: ...
+    @property
+    def position(self) -> _Array: ...
+    @property
+    def rotation(self) -> _Array: ...
+    @property
+    def velocity(self) -> _Array: ...
+    @property
+    def angular_velocity(self) -> _Array: ...
+    @property
+    def orbit_position(self) -> _Column: ...
+    @property
+    def orbit_velocity(self) -> _Column: ...
 
 @final
 class GravityGradient(Effect):

@@ -16,8 +16,6 @@ from onorbit_rs.campaigns.draws import Sampling, check_sampling, unit_draw
 from onorbit_rs.campaigns.expand import Expander
 from onorbit_rs.engines import versions
 from onorbit_rs.output import scenario_digest, with_absolute_paths
-from onorbit_rs.scenario import WorldScenario
-from onorbit_rs.scenario.control.python import PythonController
 
 if TYPE_CHECKING:
     from onorbit_rs.campaigns.load import LoadedCampaign
@@ -119,12 +117,5 @@ def digest_of(plan: Plan) -> str:
     return scenario_digest(content)
 
 
-def laws_of(scenario: AnyScenario) -> list[Any]:
-    """Return the control laws of a scenario, of all its systems."""
-    alone = scenario.scenarios.values() if isinstance(scenario, WorldScenario) else [scenario]
-    return [law for one in alone for law in one.laws]
-
-
 def _needs_processes(scenario: AnyScenario) -> bool:
-    has_python = any(isinstance(law, PythonController) for law in laws_of(scenario))
-    return has_python or scenario.engine != "native"
+    return bool(scenario.user_classes) or scenario.engine != "native"

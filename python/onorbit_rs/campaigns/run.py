@@ -15,7 +15,7 @@ from onorbit_rs.campaigns.kept_columns import columns_of
 from onorbit_rs.campaigns.load import load_campaign
 from onorbit_rs.campaigns.on_processes import on_processes
 from onorbit_rs.campaigns.on_threads import on_threads
-from onorbit_rs.campaigns.plan import Plan, digest_of, laws_of, plan_of
+from onorbit_rs.campaigns.plan import Plan, digest_of, plan_of
 from onorbit_rs.campaigns.progress import campaign_progress
 from onorbit_rs.campaigns.report import write_report
 from onorbit_rs.campaigns.storage import FAILURES, CampaignFolder, is_campaign
@@ -28,9 +28,8 @@ from onorbit_rs.exceptions import DtypeError, InputError, OnOrbitError
 from onorbit_rs.scenario import WorldScenario
 from onorbit_rs.scenario.build import build
 from onorbit_rs.scenario.build_world import build_world
-from onorbit_rs.scenario.control.python import PythonController
-from onorbit_rs.scenario.control.python_source import source_of
 from onorbit_rs.scenario.load import check
+from onorbit_rs.scenario.user_code import source_of
 from onorbit_rs.simulation.run import Run, run
 
 if TYPE_CHECKING:
@@ -250,9 +249,8 @@ def _check_cluster(cluster: str | None) -> None:
 def _check_nominal(plan: Plan, loaded: LoadedCampaign) -> None:
     """Build the nominal scenario, so that its errors and warnings are reported before any case runs."""
     scenario = loaded.scenario
-    for law in laws_of(scenario):
-        if isinstance(law, PythonController):
-            announce(source_of(law, scenario.folder))
+    for part in scenario.user_classes:
+        announce(source_of(part, scenario.folder))
     is_world = isinstance(scenario, WorldScenario)
     built = build_world(scenario, runs_code=False) if is_world else build(scenario, runs_code=False)  # type: ignore[arg-type]
     if not plan.keep.columns:

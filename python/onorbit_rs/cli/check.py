@@ -12,7 +12,7 @@ from onorbit_rs.common.counting import count
 from onorbit_rs.common.printable import shell_word
 
 if TYPE_CHECKING:
-    from onorbit_rs.scenario import Scenario
+    from onorbit_rs.scenario import Scenario, WorldScenario
     from onorbit_rs.scenario.build import Built
     from onorbit_rs.scenario.build_world import BuiltWorld
 
@@ -22,13 +22,13 @@ def check(
     quiet: QuietOption = False,
     as_json: JsonOption = False,
     trust: Annotated[
-        bool, typer.Option("--trust", help="Also execute controllers written in Python.")
+        bool, typer.Option("--trust", help="Also execute controllers and effects written in Python.")
     ] = False,
     assignments: SetOption = None,
 ) -> None:
     """Check a scenario and its files without running it.
 
-    Python controllers are inspected but not executed, unless --trust is given.
+    Controllers and effects written in Python are inspected but not executed, unless --trust is given.
     """
     from onorbit_rs.cli.console import print_json
     from onorbit_rs.scenario import WorldScenario, load
@@ -38,10 +38,10 @@ def check(
     checked = load(scenario, changes=scenario_changes(assignments))
     built: Built | BuiltWorld
     if isinstance(checked, WorldScenario):
-        built, robots = build_world(checked, runs_code=trust), list(checked.scenarios.values())
+        built = build_world(checked, runs_code=trust)
     else:
-        built, robots = build(checked, runs_code=trust), [checked]
-    not_run = [] if trust else [source for robot in robots for source in _sources(robot)]
+        built = build(checked, runs_code=trust)
+    not_run = [] if trust else _sources(checked)
     if as_json:
         print_json(as_data(built) | {"code_not_run": not_run})
     elif not quiet:
@@ -51,13 +51,12 @@ def check(
         print_line(f"next: onorbit run {shell_word(scenario)} --out DIR")
 
 
-def _sources(scenario: Scenario) -> list[str]:
+def _sources(scenario: Scenario | WorldScenario) -> list[str]:
     """Return the user's Python files and modules that a run would execute."""
     from onorbit_rs.common.user_code import is_foreign
-    from onorbit_rs.scenario.control import PythonController
-    from onorbit_rs.scenario.control.python_source import source_of
+    from onorbit_rs.scenario.user_code import source_of
 
-    sources = [source_of(law, scenario.folder) for law in scenario.laws if isinstance(law, PythonController)]
+    sources = [source_of(part, scenario.folder) for part in scenario.user_classes]
     return [source for source in dict.fromkeys(sources) if is_foreign(source)]
 
 

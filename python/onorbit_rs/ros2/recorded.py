@@ -88,7 +88,7 @@ def _orbit(run: Run) -> Orbit | None:
             return scenario.orbit.build(scenario.folder)
         # its perturbations are those of the environment
         model = None if isinstance(scenario, WorldScenario) else run.model
-        return build_environment(scenario, model).orbit
+        return build_environment(scenario, model, runs_code=False).orbit
     except OnOrbitError as error:
         warnings.warn(
             f"the reference orbit cannot be computed again ({error}); /orbit/twist therefore contains the "

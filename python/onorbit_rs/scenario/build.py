@@ -15,6 +15,7 @@ from onorbit_rs.scenario.control import GripForceController
 from onorbit_rs.scenario.control.load import check_load, needs_load
 from onorbit_rs.scenario.control.selection import joint_group, tool_of
 from onorbit_rs.scenario.engine import build_engine
+from onorbit_rs.scenario.environment import PythonEffect
 from onorbit_rs.scenario.environment.earth import build_earth
 from onorbit_rs.scenario.environment.surfaces import build_surfaces
 from onorbit_rs.scenario.locations import dotted, located, scenario_error
@@ -76,7 +77,7 @@ def build(scenario: Scenario, *, runs_code: bool = True) -> Built:
     check_record_every(scenario)
     model = scenario.robot.build(scenario)
     build_watches(scenario, {"": model})
-    around = build_environment(scenario, model)
+    around = build_environment(scenario, model, runs_code=runs_code)
     with located(scenario, "initial"):
         q, v = scenario.initial.build(model, around.orbit)
     q, v = closed_start(scenario, model, q, v)
@@ -148,8 +149,13 @@ def _check_surfaces(scenario: Scenario, model: _core.Model) -> None:
         _core.World([_core.System("robot", model, *at_rest, surfaces=build_surfaces(surfaces))])
 
 
-def build_environment(scenario: Scenario | WorldScenario, model: _core.Model | None) -> Environment:
-    """Return the orbit, the Earth and the effects; raise an error if their data end before the run ends."""
+def build_environment(
+    scenario: Scenario | WorldScenario, model: _core.Model | None, *, runs_code: bool = True
+) -> Environment:
+    """Return the orbit, the Earth and the effects; raise an error if their data end before the run ends.
+
+    Without ``runs_code``, effects written in Python are inspected, and have no wrenches.
+    """
     duration, folder = scenario.simulation.duration, scenario.folder
     with located(scenario, "orbit"):
         orbit = None if scenario.orbit is None else scenario.orbit.build(folder)
@@ -157,7 +163,7 @@ def build_environment(scenario: Scenario | WorldScenario, model: _core.Model | N
         earth = build_earth(scenario.earth, scenario.epoch, orbit, folder)
         if earth is not None:
             earth.rotation(duration)  # raises an error if the table ends before the run
-    effects = build_effects(scenario, model)
+    effects = build_effects(scenario, model, runs_code=runs_code)
     with located(scenario, "orbit"):
         if isinstance(scenario.orbit, NumericalOrbit) and orbit is not None:
             orbit = scenario.orbit.integrate(orbit, effects, earth)
@@ -166,12 +172,20 @@ def build_environment(scenario: Scenario | WorldScenario, model: _core.Model | N
     return Environment(orbit, earth, effects)
 
 
-def build_effects(scenario: Scenario | WorldScenario, model: _core.Model | None) -> list[_core.Effect]:
-    """Return the effects, whose links must exist on ``model``; None skips this check, as for a world."""
+def build_effects(
+    scenario: Scenario | WorldScenario, model: _core.Model | None, *, runs_code: bool = True
+) -> list[_core.Effect]:
+    """Return the effects, whose links must exist on ``model``; None skips this check, as for a world.
+
+    Without ``runs_code``, effects written in Python are inspected, and have no wrenches.
+    """
     effects: list[_core.Effect] = []
     for index, effect in enumerate(scenario.effects):
         with located(scenario, "environment", index):
-            effects.append(effect.build(model, scenario.folder))
+            if isinstance(effect, PythonEffect) and not runs_code:
+                effects.append(effect.inspect(scenario.folder))
+            else:
+                effects.append(effect.build(model, scenario.folder))
     return effects
 
 

@@ -73,14 +73,15 @@ def build_world(scenario: WorldScenario, *, runs_code: bool = True) -> BuiltWorl
     check_record_every(next(iter(single.values())))
     models = {name: alone.robot.build(alone) for name, alone in single.items()}
     build_watches(scenario, models)
-    around = build_environment(scenario, None)
+    around = build_environment(scenario, None, runs_code=runs_code)
     states = _initial_states(scenario, models, around)
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", ".* does not act on bodies")  # the world issues this warning
         systems = {
             name: build_around(
                 alone, models[name], states[name],
-                around._replace(effects=build_effects(alone, models[name])), runs_code=runs_code,
+                around._replace(effects=build_effects(alone, models[name], runs_code=runs_code)),
+                runs_code=runs_code,
             )
             for name, alone in single.items()
         }  # fmt: skip

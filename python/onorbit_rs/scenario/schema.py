@@ -13,7 +13,7 @@ from onorbit_rs.scenario.control import AnyControl, AnyController, Controller
 from onorbit_rs.scenario.control.check import check_control
 from onorbit_rs.scenario.document import Document
 from onorbit_rs.scenario.engine import check_engine
-from onorbit_rs.scenario.environment import AnyEffect, BodyWrenchEffect
+from onorbit_rs.scenario.environment import AnyEffect, BodyWrenchEffect, PythonEffect
 from onorbit_rs.scenario.environment.surface_effects import SurfaceEffect
 from onorbit_rs.scenario.environment.surfaces import RobotSurfaces
 from onorbit_rs.scenario.errors import inconsistent
@@ -24,6 +24,7 @@ from onorbit_rs.scenario.part import Part
 from onorbit_rs.scenario.reference import Reference
 from onorbit_rs.scenario.robot import Robot
 from onorbit_rs.scenario.settings import ControlSettings, SimulationSettings
+from onorbit_rs.scenario.user_code import UserClass
 from onorbit_rs.scenario.validation_errors import first_error
 from onorbit_rs.scenario.watches import check_names
 from onorbit_rs.scenario.yaml_lines import Lines, Location
@@ -93,6 +94,11 @@ class Scenario(RobotKeys, Document):
         return at if self._in_world is None else self._in_world.location(at)
 
     @property
+    def user_classes(self) -> list[UserClass]:
+        """Classes written in Python by the user: controllers and effects."""
+        return [part for part in (*self.laws, *self.effects) if isinstance(part, UserClass)]
+
+    @property
     def event_names(self) -> list[str]:
         """Names of the events of the world; empty for a scenario with one robot."""
         return [] if self._in_world is None else self._in_world.events
@@ -126,7 +132,7 @@ class Scenario(RobotKeys, Document):
             check_actuators((), self.actuators)
         if self.orbit is None:
             for index, effect in enumerate(self.environment):
-                if not isinstance(effect, BodyWrenchEffect):
+                if not isinstance(effect, (BodyWrenchEffect, PythonEffect)):
                     what = effect.kind.replace("_", " ")
                     raise inconsistent(("environment", index), f"the {what} requires an orbit; add 'orbit'")
             if self.initial.frame in ("lvlh", "path"):

@@ -14,7 +14,7 @@ from onorbit_rs.scenario.actuators import check_actuators
 from onorbit_rs.scenario.contact import Contact, check_contacts
 from onorbit_rs.scenario.document import Document
 from onorbit_rs.scenario.engine import check_world_engine
-from onorbit_rs.scenario.environment import AnyEffect, BodyWrenchEffect
+from onorbit_rs.scenario.environment import AnyEffect, BodyWrenchEffect, PythonEffect
 from onorbit_rs.scenario.environment.paths import split_link
 from onorbit_rs.scenario.environment.surface_effects import SurfaceEffect
 from onorbit_rs.scenario.errors import inconsistent
@@ -25,6 +25,7 @@ from onorbit_rs.scenario.materials import MaterialPair, check_materials, look_up
 from onorbit_rs.scenario.orbit import StartOrbit
 from onorbit_rs.scenario.schema import InWorld, RobotKeys, Scenario
 from onorbit_rs.scenario.settings import ControlSettings, WorldSettings
+from onorbit_rs.scenario.user_code import UserClass
 from onorbit_rs.scenario.validation_errors import combined
 from onorbit_rs.scenario.watches import check_names
 from onorbit_rs.scenario.yaml_lines import Lines, Location
@@ -109,12 +110,18 @@ class WorldScenario(Document):
         """Effects of the environment, whose links are given as paths ``SYSTEM/LINK``."""
         return self.environment
 
+    @property
+    def user_classes(self) -> list[UserClass]:
+        """Classes written in Python by the user: effects, and the controllers of all systems."""
+        effects = [effect for effect in self.environment if isinstance(effect, UserClass)]
+        return effects + [part for alone in self.scenarios.values() for part in alone.user_classes]
+
     def _effects_on(self, name: str) -> dict[int, AnyEffect]:
         """Return the effects that act on a system, by their index in ``environment``."""
         found: dict[int, AnyEffect] = {}
         for index, effect in enumerate(self.environment):
             own: AnyEffect | None = effect
-            if isinstance(effect, (SurfaceEffect, BodyWrenchEffect)):
+            if isinstance(effect, (SurfaceEffect, BodyWrenchEffect, PythonEffect)):
                 own = effect.of_system(name, self.systems)
             if own is not None:
                 found[index] = own

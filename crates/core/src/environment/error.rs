@@ -6,6 +6,8 @@ use super::surfaces::SurfaceError;
 use crate::earth::EarthError;
 use crate::gravity::GravityError;
 use crate::number_text::{indices, short, unlike};
+use std::error::Error;
+use std::sync::Arc;
 
 /// Errors of the `environment` module; each holds the offending numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -97,6 +99,9 @@ pub enum EnvironmentError {
     /// The position of the Sun or the time is unknown.
     #[error(transparent)]
     Earth(#[from] EarthError),
+    /// An effect that is not part of this library failed.
+    #[error(transparent)]
+    User(#[from] UserError),
     /// The numbers of bodies and wrenches differ.
     #[error("the number of wrenches is {got}; expected {expected}, one for each body")]
     WrongLength {
@@ -105,6 +110,17 @@ pub enum EnvironmentError {
         /// Number of given wrenches.
         got: usize,
     },
+}
+
+/// Error of an effect that is not part of this library. Copies refer to the same error.
+#[derive(Clone, Debug, thiserror::Error)]
+#[error("{0}")]
+pub struct UserError(pub Arc<dyn Error + Send + Sync>);
+
+impl PartialEq for UserError {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
 }
 
 /// Point of a scene to which an error refers.

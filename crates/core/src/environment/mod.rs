@@ -39,7 +39,7 @@ pub use body_wrench::BodyWrench;
 pub use differential_gravity::{DifferentialGravity, GravityMode};
 pub use drag::Drag;
 pub use effect::Effect;
-pub use error::{EnvironmentError, ScenePoint};
+pub use error::{EnvironmentError, ScenePoint, UserError};
 pub use gravity_gradient::GravityGradient;
 pub use radiation_pressure::{RadiationPressure, SHADOW_RADIUS, SOLAR_FLUX};
 pub(crate) use scene::Ephemeris;

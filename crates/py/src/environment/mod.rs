@@ -7,16 +7,17 @@ mod gravity_gradient;
 mod radiation_pressure;
 mod surfaces;
 mod target;
+mod user;
 
 use crate::arrays::list_of;
 use crate::errors::IntoPython;
-use crate::pickling::{ConstructorCall, Reduced};
+use crate::pickling::ConstructorCall;
 use nalgebra::Vector3;
 use onorbit_core::environment::atmosphere::Atmosphere;
 use onorbit_core::environment::{BodyWrench, Drag, Effect, GravityGradient, RadiationPressure};
 use onorbit_core::gravity::{GravityField, Luminary};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
 use std::sync::Arc;
 
 pub(crate) use surfaces::SurfaceAssignment;
@@ -26,6 +27,7 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
 pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<PyEffect>()?;
+    m.add_class::<user::PyBodies>()?;
     m.add_class::<gravity_gradient::PyGravityGradient>()?;
     m.add_class::<body_wrench::PyBodyWrench>()?;
     m.add_class::<drag::PyDrag>()?;
@@ -34,23 +36,62 @@ pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
     surfaces::add_classes(m)
 }
 
-/// Base class of environment effects, which act on the bodies of a simulation. The argument ``environment``
-/// of a simulation is a list of effects.
+/// Base class of environment effects, which act on the bodies of a simulation.
+///
+/// The argument ``environment`` of a simulation is a list of effects. A subclass written in Python must define
+/// ``wrenches(t, bodies)``, which returns a (K, 6) array: for each of the K bodies of ``bodies`` (:class:`BodyStates`)
+/// the force through its centre of mass, N, and the torque about its centre of mass, N m, both in W axes.
+/// It may define ``event_times()``, which returns the simulation times, s, at which the wrenches jump: steps end
+/// there.
+///
+/// ``wrenches`` is called at every stage of a step, so that the order of the integrator is preserved, and for
+/// rows: four to five times per step with RK4, each of which takes some 10 us. Steps may be computed more than
+/// once; the result must therefore depend only on the arguments. An exception ends the run and is raised
+/// unchanged by ``run``.
+///
+/// Parameters
+/// ----------
+/// arguments, keywords : any
+///     Arguments of the constructor of a subclass, which are not used here.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np
+/// >>> import onorbit_rs as oo
+/// >>> class Damping(oo.Effect):
+/// ...     def wrenches(self, t, bodies):
+/// ...         return np.hstack([-0.1 * bodies.velocity, -0.5 * bodies.angular_velocity])
 #[pyclass(name = "Effect", subclass, frozen, module = "onorbit_rs")]
 pub(crate) struct PyEffect {
     kind: Kind,
-    constructor_call: ConstructorCall,
+    /// Call with which the effect is pickled; `None` for an effect written in Python.
+    constructor_call: Option<ConstructorCall>,
 }
 
 #[pymethods]
 impl PyEffect {
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        self.constructor_call.reduce(py)
+    #[new]
+    #[pyo3(signature = (*arguments, **keywords))]
+    fn of_subclass(arguments: &Bound<'_, PyTuple>, keywords: Option<&Bound<'_, PyDict>>) -> Self {
+        let _ = (arguments, keywords); // those of the subclass
+        Self { kind: Kind::User, constructor_call: None }
+    }
+
+    fn __reduce_ex__<'py>(this: &Bound<'py, Self>, _protocol: i32) -> PyResult<Bound<'py, PyAny>> {
+        let py = this.py();
+        if let Some(call) = &this.get().constructor_call {
+            return call.reduce(py)?.into_pyobject(py).map(Bound::into_any);
+        }
+        let (class, attributes) = (this.get_type(), this.getattr_opt("__dict__")?);
+        let create = py.import("copyreg")?.getattr("__newobj__")?;
+        (create, (class,), attributes).into_pyobject(py).map(Bound::into_any)
     }
 }
 
 /// Parameters of an effect, with names of bodies that are not yet resolved in the systems of a simulation.
 pub(crate) enum Kind {
+    /// Effect written in Python.
+    User,
     GravityGradient,
     /// Field of the planet, which [`crate::gravity::gravity_of`] adds to the gravity of the run.
     GravityField(Arc<GravityField>),
@@ -90,7 +131,7 @@ impl PyEffect {
         keywords: &Bound<'_, PyDict>,
     ) -> PyResult<PyClassInitializer<Self>> {
         let constructor_call = ConstructorCall::with_keywords(constructor, keywords)?;
-        Ok(PyClassInitializer::from(Self { kind, constructor_call }))
+        Ok(PyClassInitializer::from(Self { kind, constructor_call: Some(constructor_call) }))
     }
 
     /// Returns the gravity field if the effect is a gravity field, otherwise `None`.
@@ -116,8 +157,10 @@ impl PyEffect {
 
     /// Returns the effect with the names of its bodies resolved in the given systems; `None` for a part of
     /// gravity.
-    pub(crate) fn on(&self, py: Python<'_>, targets: &[Target<'_>]) -> PyResult<Option<Arc<dyn Effect>>> {
-        Ok(Some(match &self.kind {
+    pub(crate) fn on(this: &Bound<'_, Self>, targets: &[Target<'_>]) -> PyResult<Option<Arc<dyn Effect>>> {
+        let py = this.py();
+        Ok(Some(match &this.get().kind {
+            Kind::User => Arc::new(user::PythonEffect::new(this, targets)?),
             Kind::GravityField(_) | Kind::ThirdBody(_) => return Ok(None),
             Kind::GravityGradient => Arc::new(GravityGradient),
             Kind::BodyWrench { frame, force, torque, start, end } => {

@@ -11,6 +11,10 @@ impl IntoPython for EnvironmentError {
         let message = self.to_string();
         match &self {
             Self::Gravity(error) => error.clone().into_python(py),
+            Self::User(error) => match error.0.downcast_ref::<PyErr>() {
+                Some(raised) => raised.clone_ref(py), // the same object, including its traceback
+                None => plain(py, "EffectError", &message),
+            },
             Self::NotFinite { name, value } => {
                 raise(py, "EffectError", &message, &fields!(py, "name": name, "got": value))
             }

@@ -78,7 +78,7 @@ pub(crate) fn set_environment(
     for (number, own) in surfaces.iter().enumerate() {
         own.map_or(Ok(()), |own| own.on_robot(py, &targets, number).map(drop))?; // reports errors even if no effect uses the surfaces
     }
-    let on_systems = environment.iter().filter_map(|effect| effect.get().on(py, &targets).transpose());
+    let on_systems = environment.iter().filter_map(|effect| PyEffect::on(effect, &targets).transpose());
     simulation.effects = on_systems.collect::<PyResult<_>>()?;
     let mu = simulation.orbit.as_ref().and_then(|orbit| orbit.mu());
     let of_orbit = simulation.orbit.as_ref().and_then(|orbit| orbit.gravity());

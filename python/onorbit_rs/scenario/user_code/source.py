@@ -1,4 +1,4 @@
-"""Inspects the source of a controller written in Python without executing it."""
+"""Inspects the source of a class written in Python without executing it."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs.common.input_files import LARGEST_TEXT, check_regular, read_bytes
-from onorbit_rs.exceptions import ControlError, NotFoundError
-from onorbit_rs.scenario.control.python_errors import no_class, no_module, no_python, no_update
+from onorbit_rs.exceptions import NotFoundError
+from onorbit_rs.scenario.user_code.errors import no_class, no_method, no_module, no_python
 
 if TYPE_CHECKING:
-    from onorbit_rs.scenario.control.python import PythonController
+    from onorbit_rs.scenario.user_code.part import UserClass
 
-_BASES_WITHOUT_UPDATE = ("Controller", "ABC", "object", "Protocol", "Generic")
+_BASES_WITHOUT_METHOD = ("Controller", "Effect", "ABC", "object", "Protocol", "Generic")
 _KINDS = inspect.Parameter
 
 
@@ -31,13 +31,13 @@ class Placeholder:
         return np.zeros(len(state.joints))
 
 
-def source_of(part: PythonController, folder: Path) -> str:
-    """Return the path of the file that defines a controller, or the name of a module without a file.
+def source_of(part: UserClass, folder: Path) -> str:
+    """Return the path of the file that defines the class, or the name of a module without a file.
 
     Parameters
     ----------
-    part : PythonController
-        Controller in the scenario.
+    part : UserClass
+        Part of the scenario.
     folder : path
         Folder of the scenario, at which a relative path starts.
 
@@ -49,24 +49,24 @@ def source_of(part: PythonController, folder: Path) -> str:
     if part.file is not None:
         file = folder / part.file
         try:
-            check_regular(file, "controller")
+            check_regular(file, part.role)
         except NotFoundError as error:
             message = f"{error}; a relative path starts at the scenario's folder"
-            raise NotFoundError(message, path=str(file), kind="controller") from None
+            raise NotFoundError(message, path=str(file), kind=part.role) from None
         return str(file)
-    found = _module_file(str(part.module))
+    found = _module_file(part)
     return str(part.module) if found is None else found
 
 
-def inspect_source(part: PythonController, folder: Path) -> Placeholder:
-    """Return a placeholder for a controller after inspecting its source.
+def inspect_source(part: UserClass, folder: Path) -> Placeholder:
+    """Return a placeholder for an object of the user's class after inspecting its source.
 
     Only properties that are known without executing the source are checked.
 
     Parameters
     ----------
-    part : PythonController
-        Controller in the scenario.
+    part : UserClass
+        Part of the scenario.
     folder : path
         Folder of the scenario, at which a relative path starts.
 
@@ -74,20 +74,20 @@ def inspect_source(part: PythonController, folder: Path) -> Placeholder:
     ------
     NotFoundError, ReadError
         If there is no such file or module, or it cannot be read.
-    ControlError
-        If the source is not Python, the class or its method ``update`` is missing, or its constructor does
+    ControlError, EffectError
+        If the source is not Python, the class or its method is missing, or its constructor does
         not accept the arguments.
     """
     source = source_of(part, folder)
     if not source.endswith(".py"):
         if part.file is None:
             return Placeholder()  # a compiled module has no source
-        raise no_python(source)
+        raise no_python(part, source)
     try:
-        tree = ast.parse(read_bytes(source, LARGEST_TEXT, "controller"), filename=source)
+        tree = ast.parse(read_bytes(source, LARGEST_TEXT, part.role), filename=source)
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         reason = " ".join(str(error).split())
-        raise ControlError(
+        raise part.error(
             f"{source} cannot be read as Python: {type(error).__name__}: {reason}; correct the file",
             name="file",
             got=source,
@@ -96,15 +96,15 @@ def inspect_source(part: PythonController, folder: Path) -> Placeholder:
     classes = {node.name: node for node in statements if isinstance(node, ast.ClassDef)}
     definition = classes.get(part.class_)
     if definition is None and not _may_be_bound(part.class_, statements):
-        raise no_class(part.class_, source, classes)
+        raise no_class(part, source, classes)
     if definition is not None:
         _check_class(definition, classes, part, source)
     return Placeholder()
 
 
-def _module_file(name: str) -> str | None:
+def _module_file(part: UserClass) -> str | None:
     """Return the file of a module, or None if it has none, without importing the module or its packages."""
-    top, *rest = name.split(".")
+    top, *rest = str(part.module).split(".")
     try:
         spec = importlib.util.find_spec(top)
     except (ValueError, ImportError):
@@ -114,7 +114,7 @@ def _module_file(name: str) -> str | None:
         inner = ".".join([top, *rest[: depth + 1]])
         spec = None if folders is None else importlib.machinery.PathFinder.find_spec(inner, folders)
     if spec is None:
-        raise no_module(name)
+        raise no_module(part)
     return spec.origin if spec.has_location else None
 
 
@@ -142,9 +142,9 @@ def _may_be_bound(name: str, statements: list[ast.stmt]) -> bool:
 
 
 def _check_class(
-    definition: ast.ClassDef, classes: dict[str, ast.ClassDef], part: PythonController, source: str
+    definition: ast.ClassDef, classes: dict[str, ast.ClassDef], part: UserClass, source: str
 ) -> None:
-    """Raise ControlError for a class without ``update``, or a constructor that rejects the arguments."""
+    """Raise an error for a class without its method, or a constructor that rejects the arguments."""
     line, are_all_known = _with_bases(definition, classes)
     methods = [
         (node.name, node)
@@ -156,8 +156,8 @@ def _check_class(
         node.id for one in line for item in one.body if isinstance(item, ast.Assign)
         for node in ast.walk(item) if isinstance(node, ast.Name)
     }  # fmt: skip
-    if "update" not in names and are_all_known:
-        raise no_update(part.class_, source)
+    if part.method_name not in names and are_all_known:
+        raise no_method(part, source)
     is_plain = are_all_known and "__new__" not in names and not any(one.decorator_list for one in line)
     constructor = next((node for name, node in methods if name == "__init__"), None)
     if not is_plain or (constructor is not None and constructor.decorator_list):
@@ -166,7 +166,7 @@ def _check_class(
     try:
         inspect.Signature(parameters).bind(**part.arguments)
     except TypeError as error:
-        raise ControlError(
+        raise part.error(
             f"{part.class_}(...) of {source} does not accept the arguments {part.arguments}: {error}; "
             "correct 'arguments'",
             name="arguments",
@@ -178,7 +178,7 @@ def _with_bases(
     definition: ast.ClassDef, classes: dict[str, ast.ClassDef]
 ) -> tuple[list[ast.ClassDef], bool]:
     """Return a class with its bases in the same file, and whether all other bases are known to lack
-    ``update``.
+    the method.
     """
     line, are_all_known, waiting = [], not definition.keywords, [definition]
     while waiting:
@@ -196,7 +196,7 @@ def _with_bases(
             )
             if isinstance(base, ast.Name) and name in classes:
                 waiting.append(classes[name])
-            elif name not in _BASES_WITHOUT_UPDATE:
+            elif name not in _BASES_WITHOUT_METHOD:
                 are_all_known = False
     return line, are_all_known
 
