@@ -95,6 +95,23 @@ pub enum ContactError {
         /// Coefficient of friction up to which the contact has a force.
         limit: f64,
     },
+    /// The impulses or forces of rigid contacts do not converge.
+    #[error(
+        "contact {contacts}: the impulses at {points} rigid points did not converge; the last of {sweeps} sweeps \
+         changed a velocity by {change} m/s; use a compliant normal force, such as HuntCrossley, for contacts of \
+         long rows or stacks of bodies",
+        change = short(*change)
+    )]
+    Unsolved {
+        /// Names of the contacts, as text.
+        contacts: String,
+        /// Number of points.
+        points: usize,
+        /// Number of sweeps over all points.
+        sweeps: usize,
+        /// Largest change of a velocity in the last sweep, m/s.
+        change: f64,
+    },
     /// A shape is invalid, or the distance between two shapes could not be computed.
     #[error("contact '{contact}': {source}")]
     Geometry {

@@ -22,7 +22,7 @@ mod normal;
 mod point_impulse;
 mod restitution;
 
-pub(crate) use coulomb::{Block, ImpulseProblem};
+pub(crate) use coulomb::{Block, ImpulseProblem, MOST_SWEEPS, Unsolved};
 pub use declared::{Contact, ContactLaw, ContactSide, ContactSteps};
 pub use error::ContactError;
 pub use friction::{Bristle, Friction, FrictionForce};

@@ -16,6 +16,7 @@ impl IntoPython for ContactError {
             Self::Painleve { contact, friction, limit, .. } => {
                 fields!(py, "name": contact, "got": friction, "expected": limit)
             }
+            Self::Unsolved { contacts, change, .. } => fields!(py, "name": contacts, "got": change),
             Self::NoLink { contact, pattern, .. } => fields!(py, "name": contact, "got": pattern),
             Self::NoShape { contact, .. }
             | Self::SameLink { contact }

@@ -10,6 +10,7 @@ use super::mode::Phase;
 use super::responses::{ContactAt, Responses};
 use super::rigid::RestingPoint;
 use super::side::SideMotion;
+use super::strike::unsolved;
 use super::touching::Touching;
 use crate::contact::{Block, ContactError, ImpactLaw, ImpulseProblem};
 use crate::simulation::state::State;
@@ -128,7 +129,9 @@ impl Contacts {
             }
         }
         let before = hold.impulses.clone();
-        hold.problem.solve(&mut hold.impulses);
+        let solved = hold.problem.solve(&mut hold.impulses);
+        let name = |point: &HeldPoint| list[near[point.near]].name.as_str();
+        solved.map_err(|error| unsolved(error, hold.points.iter().map(name)))?;
         let change = (0..n).map(|i| hold.problem.matrix[i * n + i] * (hold.impulses[i] - before[i]).abs());
         let change = change.fold(0.0, f64::max);
         for (point, p) in hold.points.iter().zip(hold.impulses.chunks_exact(3)) {

@@ -3,7 +3,7 @@
 
 use super::Contacts;
 use super::responses::{ContactAt, Responses, StopAt};
-use crate::contact::{Block, ContactError, ImpactLaw, ImpulseProblem};
+use crate::contact::{Block, ContactError, ImpactLaw, ImpulseProblem, MOST_SWEEPS, Unsolved};
 use crate::dynamics::{center_of_mass, kinetic_energy};
 use crate::model::BASE_NV;
 use crate::simulation::state::State;
@@ -108,7 +108,7 @@ impl Contacts {
             self.begin_touches(t, &points);
         }
         if has_impact {
-            self.apply_impulses(trees, state, &mut points, is_endless);
+            self.apply_impulses(trees, state, &mut points, is_endless)?;
             self.keep(&state.contacts);
         }
         if let Some(t) = t {
@@ -126,7 +126,7 @@ impl Contacts {
         state: &mut State<S>,
         points: &mut [TouchedPoint],
         is_endless: bool,
-    ) {
+    ) -> Result<(), ContactError> {
         let places: Vec<ContactAt> = points.iter().map(|point| point.place).collect();
         let stops: Vec<(StopAt, f64)> = trees.iter().zip(&state.trees).enumerate().fold(
             Vec::new(),
@@ -159,7 +159,10 @@ impl Contacts {
             problem.blocks.push(Block::Stop { target: rebound(restitution, *rate, 0.0) });
             problem.free.push(*rate);
         }
-        let (p, factor) = problem.impact();
+        let solved = problem.impact();
+        let (p, factor) = solved.map_err(|error| {
+            unsolved(error, points.iter().map(|point| self.list[point.number].name.as_str()))
+        })?;
         let u = problem.velocities(&p);
         self.add_momenta(trees, state, points, &p);
         let changes = responses.changes(trees.len(), &p);
@@ -194,6 +197,7 @@ impl Contacts {
             own.angular_impulse += (point.place.at - center).cross(impulse);
             own.normal_work += (row..row + 3).map(lost).sum::<f64>();
         }
+        Ok(())
     }
 
     /// Adds the impulses `p` at `points` to the momenta of the trees: the impulse on the second side, and the
@@ -244,4 +248,13 @@ impl Contacts {
 fn impulse_of(point: &TouchedPoint, p: &[f64]) -> Vec3<f64> {
     let [n, s, t] = point.place.axes;
     n * p[0] + s * p[1] + t * p[2]
+}
+
+/// Returns the error for impulses that do not converge, at points of the contacts with these names.
+pub(super) fn unsolved<'a>(unsolved: Unsolved, names: impl Iterator<Item = &'a str>) -> ContactError {
+    let mut names: Vec<String> = names.map(|name| format!("'{name}'")).collect();
+    let points = names.len();
+    names.dedup();
+    let contacts = names.join(", ");
+    ContactError::Unsolved { contacts, points, sweeps: MOST_SWEEPS, change: unsolved.change }
 }
