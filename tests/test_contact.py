@@ -96,6 +96,23 @@ def test_bristles_far_stiffer_than_a_soft_pad_pass_every_check(
         assert all(holds for *_, holds in trace[name].certificate())
 
 
+def test_a_jump_from_static_to_kinetic_friction_is_no_error_of_the_attitude() -> None:
+    """The rows do not contain the acceleration before the jump, so that a check of rows counts the jump."""
+    plate = oo.Model.rigid_body(0.18, np.eye(3) * 0.0036).with_collision("base", oo.Shape.box(0.6, 0.6, 0.6))
+    sphere = oo.Model.rigid_body(3.5, np.eye(3) * 0.0175).with_collision("base", oo.Shape.sphere(0.1))
+    systems = [
+        oo.System("plate", plate, plate.neutral(), np.zeros(6)),
+        oo.System("sphere", sphere, [0.41, 0.03, 0.02, 0, 0, 0, 1], [-0.05, 0.01, -0.013, 0, 0, 0]),
+    ]
+    pad = oo.Contact(
+        "plate/*", "sphere/*", normal=oo.SpringDashpot(6e3, 6.5), friction=oo.Friction(0.5, 0.4, 0.01)
+    )
+    trace = run(oo.World(systems, contacts=[pad]), 0.5, time_step=0.01)
+    for name in ("plate", "sphere"):
+        values = {row[0]: row[1] for row in trace[name].certificate()}
+        assert values["attitude_consistency"] < 0.05
+
+
 def test_the_default_name_and_lists_of_links() -> None:
     assert oo.Contact("a/body", "b/*").name == "a/body|b/*"
     contact = oo.Contact(["a/x", "a/y"], "b/*", normal=HARD, friction=oo.Friction(0.3, 0.2, 0.01))

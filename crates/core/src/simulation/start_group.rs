@@ -92,8 +92,11 @@ impl Shared {
         let rows = self.row_count(&schedule);
         let (is_native, is_adaptive) = (engine.is_none(), self.is_adaptive());
         let has_every_step = self.record_every == 1 && !is_adaptive;
-        // the rows of a system do not contain the accelerations that torques on the rest of its tree cause
-        let rows_suffice = has_every_step && (events.list.is_empty() || !is_native);
+        // the rows of a system contain neither the accelerations that torques on the rest of its tree cause, nor
+        // those just before friction of a contact jumps from its static to its kinetic value
+        let has_friction =
+            self.contacts.iter().any(|contact| contact.law.is_some_and(|law| law.friction.is_some()));
+        let rows_suffice = has_every_step && ((events.list.is_empty() && !has_friction) || !is_native);
         let rereference_beyond = self.local_reference_distance(&systems);
         let step_settings = self.step_settings(duration, &systems);
         let layout = Layout::new(systems.iter().map(|system| (&*system.name, &*system.model)));
