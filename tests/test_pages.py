@@ -39,6 +39,7 @@ def command(line: str) -> None:
 
 
 @pages
+@pytest.mark.filterwarnings("ignore:.*its latch was not met")  # a result that pages show
 def test_a_page_runs(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Runs a page from top to bottom in one folder; titled blocks are files, Python blocks continue."""
     pytest.importorskip(

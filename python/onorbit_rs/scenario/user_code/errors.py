@@ -37,7 +37,7 @@ def no_method(part: UserClass, source: str) -> OnOrbitError:
 def no_module(part: UserClass) -> NotFoundError:
     """Return the error for a module that cannot be found."""
     return NotFoundError(
-        f"module {part.module} cannot be found; install it, or give the path of a Python file as 'file' "
+        f"module {part.module!r} cannot be found; install it, or give the path of a Python file as 'file' "
         "instead",
         path=part.module,
         kind=part.role,

@@ -49,7 +49,7 @@ pub(super) fn read_link(
             )),
             None => match read_visual(collision, context) {
                 Ok(shape) => result.collisions.push(shape),
-                Err(error) => result.skipped_collisions.push(error.problem.to_string()),
+                Err(error) => result.skipped_collisions.push(error.to_string()),
             },
         }
     }

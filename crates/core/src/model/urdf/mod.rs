@@ -43,6 +43,7 @@ use pose::quaternion_warning;
 use repair::repair;
 use roxmltree::{Error as XmlError, Node};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Options for reading a URDF.
 #[derive(Clone, Copy, Debug, Default)]
@@ -65,7 +66,20 @@ pub fn from_file(path: &Path, options: &Options<'_>) -> Result<Model, UrdfError>
     let folder = std::path::absolute(path).ok().and_then(|path| path.parent().map(Path::to_owned));
     precheck::read(path)
         .and_then(|(xml, note)| read(&xml, folder.as_deref(), options, note))
+        .map(|model| with_file_in_reasons(model, path))
         .map_err(|error| error.in_file(path))
+}
+
+/// Adds the path of the file to the reasons why collision shapes were not read.
+fn with_file_in_reasons(mut model: Model, path: &Path) -> Model {
+    if model.description.links.iter().any(|link| !link.skipped_collisions.is_empty()) {
+        for link in &mut Arc::make_mut(&mut model.description).links {
+            for reason in &mut link.skipped_collisions {
+                *reason = format!("{}, {reason}", path.display());
+            }
+        }
+    }
+    model
 }
 
 /// Loads a robot from the text of a URDF. Relative names of mesh files refer to `folder`, if it is given.
