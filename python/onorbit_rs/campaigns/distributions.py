@@ -156,9 +156,9 @@ class Change(Part):
     synonyms: ClassVar = {"multiply": "scale", "factor": "scale", "offset": "add", "value": "set"}
 
     set: Distribution | None = None
-    """Replaces the value."""
+    """Distribution of a number that replaces the value."""
     add: Distribution | None = None
-    """Is added to the value."""
+    """Distribution of a number that is added to the value."""
     scale: Distribution | None = None
     """Factor of the value."""
     vector: Literal["components", "direction"] = "components"

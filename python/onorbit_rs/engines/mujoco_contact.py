@@ -100,8 +100,9 @@ def _with_forces(contacts: Sequence[Contact]) -> list[Contact]:
     )
     if wrong:
         kind = type(wrong[0]).__name__
+        verb = "contains" if isinstance(contacts, Sequence) else "is"
         raise EngineError(
-            f"contacts is, or contains, a value of type {kind}; give a list such as [oo.Contact(...)]",
+            f"contacts {verb} a value of type {kind}; give a list such as [oo.Contact(...)]",
             name="contacts", got=kind,
         )  # fmt: skip
     found = [contact for contact in contacts if contact.normal is not None]
@@ -188,8 +189,8 @@ def _set_shape(mujoco: ModuleType, spec: Any, geom: Any, shape: Visual) -> None:
              "sphere": kinds.mjGEOM_SPHERE}  # fmt: skip
     if shape.kind not in known:
         raise EngineError(
-            f"link '{shape.link}' has a {shape.kind} as its collision shape, which MuJoCo does not have; use "
-            "boxes, cylinders, capsules, spheres or meshes, or engine: native",
+            f"link '{shape.link}' has a {shape.kind} as its collision shape, which MuJoCo does not support; "
+            "use boxes, cylinders, capsules, spheres or meshes, or engine: native",
             name=shape.link, got=shape.kind, expected=", ".join(known),
         )  # fmt: skip
     geom.type = known[shape.kind]

@@ -179,9 +179,9 @@ pub enum OrbitError {
         radius = short(*radius), speed = short(*speed), sine = actual_sine(*sine, *limit), limit = short(*limit)
     )]
     Rectilinear {
-        /// Length of the position, m.
+        /// Distance from the planet's centre, m.
         radius: f64,
-        /// Length of the velocity, m/s.
+        /// Speed, m/s.
         speed: f64,
         /// Sine of the angle between position and velocity; NaN if one of them is zero.
         sine: f64,
@@ -195,9 +195,9 @@ pub enum OrbitError {
         radius = short(*radius), speed = short(*speed), sine = short(*sine)
     )]
     UndefinedFrame {
-        /// Length of the position, m.
+        /// Distance from the planet's centre, m.
         radius: f64,
-        /// Length of the velocity, m/s.
+        /// Speed, m/s.
         speed: f64,
         /// Sine of the angle between position and velocity.
         sine: f64,

@@ -184,7 +184,7 @@ def singular() -> tuple[float, ...]:
 
 
 def massless() -> Any:
-    """Return the errors of captures in which one frame is on a massless gripper whose joint has a rotor."""
+    """Return the errors, relative to Gauss's principle, of captures by a massless gripper with a rotor."""
     first, second = arm_and_target(straight(5, tip=0.0, rotor=0.2), 0.3, 0.1)
     return worst([against_gauss(first, second), against_gauss(second, first)])
 

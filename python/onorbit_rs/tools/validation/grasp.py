@@ -84,7 +84,7 @@ def creep() -> list[float]:
 
 
 def levers() -> list[float]:
-    """Return the errors of the force of three revolute fingers, N, and of their torques.
+    """Return the error of the grip force of three revolute fingers, N, and the relative one of their torques.
 
     At rest, the torque of a finger is `N aᵀ (r × n)` with the normal force `N`, the axis `a` of its joint,
     and the point `r` and the normal `n` of its contact relative to the joint.
