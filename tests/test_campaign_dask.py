@@ -8,14 +8,17 @@ import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
+import distributed
 import psutil
 import pytest
 from campaign_files import BODY, same, spin
 from killed_workers import check_killed_workers, number_of_cases
 
 import onorbit_rs as oo
+from onorbit_rs.campaigns import on_dask
 from onorbit_rs.exceptions import CampaignError, InputError
 
 distributed = pytest.importorskip("distributed", reason="Dask is not installed")
@@ -160,3 +163,24 @@ def test_dask_is_needed_for_a_cluster(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(InputError, match="pip install 'onorbit-rs"):
         oo.campaign(spin(), cluster="local")
+
+
+@pytest.mark.parametrize("status", ["running", "closed"])
+def test_a_transfer_that_is_cut_off_is_tried_again(status: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(on_dask, "_RETRY_S", 0.0)
+    calls = []
+
+    def result(timeout: float) -> str:
+        calls.append(timeout)
+        if len(calls) < 3:
+            raise distributed.comm.CommClosedError
+        return "outcome"
+
+    tasks = object.__new__(on_dask._Tasks)
+    tasks._client, tasks._address, tasks._lost_since = SimpleNamespace(status=status), "tcp://x", None
+    future = SimpleNamespace(result=result)
+    if status == "running":
+        assert tasks._result(future) == "outcome" and len(calls) == 3
+    else:
+        with pytest.raises(CampaignError, match="is gone"):
+            tasks._result(future)

@@ -39,6 +39,8 @@ _RESULT_S = 1.0
 
 It doubles each time. A large result takes long, but that of a worker that died must be requested again.
 """
+_RETRY_S = 0.2
+"""Wall-clock time after which a transfer that was cut off is tried again, s."""
 _LONGEST_RESULT_S = 60.0
 _BATCH_S = 1.0
 """Wall-clock time of the cases of one task, s."""
@@ -232,6 +234,9 @@ class _Tasks:
             except TimeoutError:
                 self._check_connection()
                 seconds = min(2.0 * seconds, _LONGEST_RESULT_S)
+            except distributed().comm.CommClosedError:  # the scheduler or a worker died during the transfer
+                self._check_connection()
+                time.sleep(_RETRY_S)
 
     def _gone(self) -> CampaignError:
         return CampaignError(f"the cluster at {self._address} is gone", reason="cluster gone")
