@@ -11,7 +11,6 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-import distributed
 import psutil
 import pytest
 from campaign_files import BODY, same, spin
