@@ -1,10 +1,9 @@
 //! Commands to joints, and wrenches on bodies, that the caller of a stepper sends to a run.
 
-use crate::arrays::{Input, fixed, wrong_shape};
+use crate::arrays::{Input, vector, wrong_shape};
 use crate::errors::{IntoPython, fields, raise};
 use crate::stepper::PyStepper;
 use crate::torques::torques;
-use nalgebra::Vector3;
 use onorbit_core::control::{ExternalCommand, Interface, JointTrajectory, Setpoint};
 use onorbit_core::simulation::{WrenchAxes, WrenchCommand};
 use pyo3::prelude::*;
@@ -131,9 +130,6 @@ fn wrench(
     torque: Optional<'_, '_>,
     frame: &str,
 ) -> PyResult<WrenchCommand> {
-    let vector = |value: Optional<'_, '_>, name| -> PyResult<Vector3<f64>> {
-        Ok(value.map_or(Ok([0.0; 3]), |value| fixed::<3>(value, name, &[3]))?.into())
-    };
     let axes = match frame {
         "world" => WrenchAxes::World,
         "body" => WrenchAxes::Body,
@@ -142,7 +138,11 @@ fn wrench(
             return Err(raise(py, "InputError", &message, &fields!(py, "name": "frame", "got": other)));
         }
     };
-    Ok(WrenchCommand { force: vector(force, "force")?, torque: vector(torque, "torque")?, axes })
+    Ok(WrenchCommand {
+        force: vector(force, "force", [0.0; 3])?,
+        torque: vector(torque, "torque", [0.0; 3])?,
+        axes,
+    })
 }
 
 /// Reads the numbers of an array with `axes` axes: one (joints or times) or two (times and joints).

@@ -24,9 +24,6 @@ that of the rows in the recording; measured with runs of 8e4 to 4e6 rows."""
 BASE_ALONE, PER_ROWS_ALONE = 0.12e9, 1.1
 """The same for a run without a folder."""
 
-MOST_RECORDED = 500_000
-"""Largest number of rows in the recording."""
-
 LARGE = 1e9
 """Size of the rows of a run, bytes, above which a warning states the size."""
 
@@ -61,7 +58,9 @@ def estimated_memory(built: Built | BuiltWorld, *, has_folder: bool) -> float:
     size, rows = estimated_bytes(built), rows_of(built)
     if not has_folder:
         return BASE_ALONE + PER_ROWS_ALONE * size
-    return BASE + size * (PER_ROWS + PER_RECORDED * min(1.0, MOST_RECORDED / rows))
+    from onorbit_rs.viewer.recording import MOST_STEPS  # imports rerun, which such a run needs anyway
+
+    return BASE + size * (PER_ROWS + PER_RECORDED * min(1.0, MOST_STEPS / rows))
 
 
 def check_size(built: Built | BuiltWorld, folder: Path | None) -> None:

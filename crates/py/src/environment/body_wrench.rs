@@ -1,9 +1,8 @@
 //! Constant wrench on a body.
 
 use super::{Any, Kind, PyEffect};
-use crate::arrays::fixed;
+use crate::arrays::vector;
 use crate::errors::{IntoPython, fields};
-use nalgebra::Vector3;
 use onorbit_core::environment::BodyWrench;
 use pyo3::prelude::*;
 
@@ -46,10 +45,7 @@ impl PyBodyWrench {
     ) -> PyResult<PyClassInitializer<Self>> {
         let keywords = fields!(py, "body": &body, "start": start, "end": end);
         let (start, end) = (start.unwrap_or(f64::NEG_INFINITY), end.unwrap_or(f64::INFINITY));
-        let vector = |value: Option<Any<'_, '_>>, name| {
-            Ok::<_, PyErr>(Vector3::from(value.map_or(Ok([0.0; 3]), |value| fixed::<3>(value, name, &[3]))?))
-        };
-        let (force, torque) = (vector(force, "force")?, vector(torque, "torque")?);
+        let (force, torque) = (vector(force, "force", [0.0; 3])?, vector(torque, "torque", [0.0; 3])?);
         // the checks do not depend on the body
         BodyWrench::new(0, force, torque)
             .and_then(|wrench| wrench.during(start, end))

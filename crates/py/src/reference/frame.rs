@@ -1,7 +1,7 @@
 //! Frames in which references are expressed.
 
 use super::{Any, pose};
-use crate::arrays::fixed;
+use crate::arrays::vector;
 use crate::errors::{IntoPython, fields, raise};
 use crate::pickling::{ConstructorCall, Reduced, call_of};
 use onorbit_core::model::Model;
@@ -43,11 +43,8 @@ impl PyTarget {
     ) -> PyResult<Self> {
         let constructor_call = call_of!(py, "Target", pose, velocity, spin)?;
         let start = self::pose(pose)?;
-        let vector = |value: Option<Any<'_, '_>>, name| {
-            value.map_or(Ok([0.0; 3]), |value| fixed::<3>(value, name, &[3]))
-        };
-        let (velocity, spin) = (vector(velocity, "velocity")?, vector(spin, "spin")?);
-        let target = Target::at(start, velocity.into(), spin.into());
+        let (velocity, spin) = (vector(velocity, "velocity", [0.0; 3])?, vector(spin, "spin", [0.0; 3])?);
+        let target = Target::at(start, velocity, spin);
         Ok(Self { target: target.map_err(|error| error.into_python(py))?, constructor_call })
     }
 
