@@ -41,7 +41,7 @@ from onorbit_rs.viewer.scene import (
     send_trails,
 )
 from onorbit_rs.viewer.series import Series, log_style, send_series, series_of
-from onorbit_rs.viewer.streams import APPLICATION, release_streams, send_blueprint
+from onorbit_rs.viewer.streams import APPLICATION, releases_streams, send_blueprint
 from onorbit_rs.viewer.targets import log_targets, send_targets
 from onorbit_rs.viewer.trace_rows import TraceRows
 from onorbit_rs.viewer.viewpoint import Viewpoint
@@ -58,6 +58,7 @@ MOST_STEPS = 500_000
 """Largest number of rows (0.5 GB); longer traces are decimated evenly, and the last row is kept."""
 
 
+@releases_streams
 def write_recording(path: Path, trace: Trace, setting: Setting, *, notes: str = "") -> Path:
     """Write a recording of a run that ``rerun PATH`` opens.
 
@@ -96,14 +97,11 @@ def write_recording(path: Path, trace: Trace, setting: Setting, *, notes: str = 
 
 @contextmanager
 def recorded_in(path: Path, name: str) -> Iterator[rr.RecordingStream]:
-    """Yield a new recording; write it to a file after the block and release its stream."""
-    try:
-        recording = new_recording(name)
-        encoded = Encoded(recording)
-        yield recording
-        encoded.write_to(path)
-    finally:
-        release_streams()
+    """Yield a new recording, and write it to a file after the block."""
+    recording = new_recording(name)
+    encoded = Encoded(recording)
+    yield recording
+    encoded.write_to(path)
 
 
 def log_paths(recording: rr.RecordingStream, rows: TraceRows, setting: Setting, viewpoint: Viewpoint) -> None:

@@ -7,9 +7,16 @@ issue 2116).
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import wraps
+from typing import ParamSpec, TypeVar
+
 import rerun as rr
 import rerun.blueprint as rrb
 import rerun_bindings
+
+P = ParamSpec("P")
+R = TypeVar("R")
 
 APPLICATION = "onorbit"
 """Name under which the viewer stores layouts."""
@@ -33,3 +40,16 @@ def send_blueprint(recording: rr.RecordingStream, views: rrb.Blueprint) -> None:
 def release_streams() -> None:
     """End the threads and free the memory of streams without references; streams in use are kept."""
     rerun_bindings.flush_and_cleanup_orphaned_recordings()
+
+
+def releases_streams(write: Callable[P, R]) -> Callable[P, R]:
+    """Release the streams of a function when it has returned; until then its own variables keep them."""
+
+    @wraps(write)
+    def release_after(*args: P.args, **kwargs: P.kwargs) -> R:
+        try:
+            return write(*args, **kwargs)
+        finally:
+            release_streams()
+
+    return release_after

@@ -29,7 +29,7 @@ from onorbit_rs.viewer.recording import (
 )
 from onorbit_rs.viewer.scene import MOST_TRAIL_PIECES
 from onorbit_rs.viewer.series import SUM, Series, log_style, send_series, series_of
-from onorbit_rs.viewer.streams import send_blueprint
+from onorbit_rs.viewer.streams import releases_streams, send_blueprint
 from onorbit_rs.viewer.viewpoint import Viewpoint
 from onorbit_rs.viewer.world_blueprint import world_layout
 from onorbit_rs.viewer.world_events import log_grasps, log_states, send_events, send_marks
@@ -76,6 +76,7 @@ class Stage:
         return max(viewpoint.size for viewpoint in self.alone.values())
 
 
+@releases_streams
 def write_world_recording(path: Path, trace: WorldTrace, setting: WorldSetting, *, notes: str = "") -> Path:
     """Write a recording of a run with several systems that ``rerun PATH`` opens.
 
