@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import time
 from typing import Any
 
@@ -13,6 +14,7 @@ from stepper_runs import Hold, assert_same_bits, passive, scenario, torque
 import onorbit_rs as oo
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build import build
+from onorbit_rs.tools.validation import grasp_worlds
 
 
 @pytest.mark.parametrize(
@@ -57,6 +59,37 @@ def test_fifty_hertz_without_a_planned_end_has_the_bits_of_a_run() -> None:
         stepper.advance(0.02)
     assert stepper.time == 2.0, "times on the grid do not accumulate rounding"
     assert_same_bits(stepper.trace(), scenario().run(2.0))
+
+
+@pytest.mark.parametrize("pieces", [[0.35], [0.02], [0.0371, 0.0007]], ids=str)
+@pytest.mark.parametrize("law", ["grip", "pid"])
+def test_a_grasp_has_the_same_bits_in_pieces_with_and_without_a_planned_end(
+    law: str, pieces: list[float]
+) -> None:
+    """The run ends at the last grid point, 70 · 0.005 s = 0.35000000000000003 s, not at 0.35 s."""
+    end, step = 0.35, 5e-3
+    reference = oo.JointWaypoints([[0.0225], [0.0185]], times=[0.0, 0.2])
+    pid = oo.Control(oo.JointPid(p=4000.0, d=400.0), reference=reference, joints=["left_jaw"], name="jaw")
+    made = grasp_worlds.world([grasp_worlds.grip() if law == "grip" else pid], opening=0.045)
+
+    def run(duration: float | None) -> oo.WorldTrace:
+        stepper = oo.Simulation(made, time_step=step).start(duration=duration)
+        for piece in itertools.cycle(pieces):
+            if stepper.time > end - 1e-9:
+                return stepper.finish()
+            stepper.advance_to(min(stepper.time + piece, end))
+        raise AssertionError
+
+    whole = oo.Simulation(made, time_step=step).run(end)
+    assert whole["hand"].time[-1] == 70 * step != end
+    assert np.any(np.asarray(whole.contacts["left"].force)), "the hand holds the bar"
+    for trace in (run(end), run(None)):
+        for system in ("hand", "bar"):
+            assert_same_bits(trace[system], whole[system])
+        for side in ("left", "right"):
+            for part in ("force", "point", "elastic", "dissipated"):
+                own = getattr(trace.contacts[side], part)
+                np.testing.assert_array_equal(own, getattr(whole.contacts[side], part))
 
 
 def test_the_state_is_that_of_the_row_and_cannot_be_written() -> None:

@@ -181,6 +181,11 @@ impl Schedule {
         t > other + self.tolerance()
     }
 
+    /// Returns true if `grid`, s, is later than `last`, s, by more than the tolerance at `last`.
+    fn is_beyond(&self, grid: f64, last: f64) -> bool {
+        grid > last + self.tolerance().max(4.0 * f64::EPSILON * last)
+    }
+
     /// Returns true if an update of the controllers of the system with index `system` is due at `t`, s.
     pub(super) fn is_tick(&self, system: usize, t: f64) -> bool {
         let Clock { period, switches } = &self.clocks[system];
@@ -216,6 +221,9 @@ impl Schedule {
 
     /// Returns the interval that begins at the current cut, and the position at its end; `None` at the
     /// planned end of the run.
+    ///
+    /// A cut that equals the planned end within the tolerance for comparing instants is the last cut, as it
+    /// would be without a planned end: `140 · 0.005` is not `0.7`.
     pub(super) fn following(&self) -> Option<(Interval, Cursor)> {
         let Cursor { now, mut next_grid, mut next_event } = self.at;
         if self.duration.is_some_and(|duration| now >= duration - self.tolerance()) {
@@ -230,7 +238,7 @@ impl Schedule {
         }
         let last = self.duration.unwrap_or(now + LONGEST_INTERVAL * self.time_step);
         let grid = if self.cuts_at_grid { next_grid as f64 * self.time_step } else { last };
-        let mut end = grid.min(last);
+        let mut end = if self.is_beyond(grid, last) { last } else { grid };
         let due = self.due.iter().copied().filter(|t| *t > now + self.tolerance());
         let is_on_grid = |period: &f64| self.cuts_at_grid && *period == self.time_step;
         let ticks = self.periods().filter(|period| !is_on_grid(period)).map(|period| self.next_tick(period));
@@ -238,9 +246,6 @@ impl Schedule {
             if cut < end - self.tolerance() {
                 end = cut;
             }
-        }
-        if self.duration.is_some_and(|duration| (duration - end).abs() <= self.tolerance()) {
-            end = last;
         }
         let is_event = next_event > events_before || self.due.iter().any(|&t| self.is_now(t));
         let interval = Interval { start: now, end, grid_step, is_event };
@@ -327,6 +332,17 @@ mod tests {
         let schedule = schedule(0.3, Some(1.0), 0.3, vec![]);
         assert_eq!(schedule.grid_steps(), Some(4));
         assert_eq!(intervals(schedule).last().map(|interval| interval.end), Some(1.0));
+    }
+
+    #[test]
+    fn a_planned_end_on_the_grid_ends_at_the_grid_point() {
+        // 140 · 0.005 is 0.7000000000000001
+        let ends = |duration| {
+            intervals(schedule(0.005, duration, 0.01, vec![0.333])).take(141).map(|interval| interval.end)
+        };
+        let (planned, open) = (ends(Some(0.7)).collect::<Vec<_>>(), ends(None).collect::<Vec<_>>());
+        assert_eq!(planned, open);
+        assert!(planned.last().is_some_and(|end| *end > 0.7 && *end - 0.7 < 1e-15));
     }
 
     #[test]
