@@ -101,14 +101,15 @@ impl GripForce {
         let change = self.integral * (memory.reference - normal) * dt;
         let command = memory.reference + memory.integral;
         let limits = |place: usize| self.effort_limit.at(place);
-        // an effort at its limit stops the integral in this direction; the fingers never pull
-        let winds_up = |place: usize| {
-            let effort = tau[place] + levers[place] * (command + change);
-            effort.abs() > limits(place) && effort * levers[place] * change > 0.0
+        // the integral grows until the effort of a joint is at its limit; the fingers never pull
+        let room = |place: usize| {
+            let (before, growth) = (tau[place] + levers[place] * command, levers[place] * change);
+            let effort = before + growth;
+            let is_beyond = effort.abs() > limits(place) && effort * growth > 0.0;
+            if is_beyond { (limits(place).copysign(effort) - before) / growth } else { 1.0 }
         };
-        if !(0..tau.len()).any(winds_up) {
-            memory.integral = (memory.integral + change).max(-memory.reference);
-        }
+        let fraction = (0..tau.len()).map(room).fold(1.0, f64::min).max(0.0);
+        memory.integral = (memory.integral + fraction * change).max(-memory.reference);
         // τ = λ (F + ∫ i (F − N) dt) − d q̇ − p Δ
         for (place, tau) in tau.iter_mut().enumerate() {
             let effort = *tau + levers[place] * (memory.reference + memory.integral);
