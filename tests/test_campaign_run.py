@@ -9,10 +9,15 @@ from typing import Any
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
+import yaml
 from campaign_files import BODY, campaign_of, reach, same, spin, write
 from commands import onorbit
 
 import onorbit_rs as oo
+from onorbit_rs.campaigns.bundled import CAMPAIGNS
+from onorbit_rs.campaigns.load import load_campaign
+from onorbit_rs.campaigns.nominal import check_nominal
+from onorbit_rs.campaigns.plan import plan_of
 from onorbit_rs.exceptions import (
     DtypeError,
     InputError,
@@ -184,6 +189,35 @@ def test_success_is_a_condition_on_the_columns(tmp_path: Path) -> None:
     assert again["wall_s"].equals(found["wall_s"])
     with pytest.raises(InputError, match="did you mean 'base_rotation_max_rad'"):
         oo.campaign(spin(success={"base_rotation_max": {"at_most": 1}}))
+
+
+@pytest.mark.parametrize(
+    ("wrong", "right"),
+    [
+        ("events.gasp.time_s", "events.grasp.time_s"),
+        ("events.grasp.tme_s", "events.grasp.time_s"),
+        ("latches.grasp.nearst_m", "latches.grasp.nearest_m"),
+        ("systems.servicer.joint_torque_max", "systems.servicer.joint_torque_max_nm"),
+    ],
+)
+def test_a_misspelt_condition_is_found_before_any_case_runs(
+    wrong: str, right: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    started = []
+    monkeypatch.setattr(
+        "onorbit_rs.campaigns.on_threads.run_case", lambda plan, case, _: started.append(case)
+    )
+    campaign = yaml.safe_load(CAMPAIGNS.path("capture_campaign").read_text(encoding="utf-8"))
+    campaign["campaign"]["success"] = {
+        right: {"at_least": 0},
+        "certificate.grasp/energy_error_rel.value": {"at_most": 1},
+    }
+    loaded = load_campaign(campaign)
+    check_nominal(plan_of(loaded), loaded)  # neither the grasp nor its balance exists after one step
+    campaign["campaign"]["success"] = {wrong: {"at_least": 0}}
+    with pytest.raises(InputError, match=f"no column '{wrong}'; did you mean '{right}'"):
+        oo.campaign(campaign)
+    assert not started
 
 
 def test_folders_of_others_are_not_touched(tmp_path: Path) -> None:

@@ -10,7 +10,11 @@ from commands import onorbit
 
 import onorbit_rs as oo
 from onorbit_rs import scenarios
-from onorbit_rs.exceptions import InputError, ScenarioError
+from onorbit_rs.campaigns.bundled import CAMPAIGNS
+from onorbit_rs.campaigns.load import load_campaign
+from onorbit_rs.campaigns.plan import digest_of, plan_of
+from onorbit_rs.cli.copy import copy
+from onorbit_rs.exceptions import InputError, NotFoundError, ScenarioError
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.changes import changed, location_of, parsed_changes
 
@@ -73,14 +77,25 @@ def test_every_bundled_scenario_can_be_copied(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    from onorbit_rs.cli.copy import copy
-
     copy(name, quiet=True)
     copied = load(tmp_path / f"{name}.yaml")
     assert copied.resolved() == load(name).resolved()
     if name == "python_controller":
         assert (tmp_path / "python_controller.py").is_file()
         assert oo.run(copied, changes={"simulation.duration": "10 ms"}, quiet=True).summary["rows"] > 1
+
+
+def test_a_bundled_campaign_can_be_copied_and_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name in CAMPAIGNS.names():
+        copy(name)
+        assert f"next: onorbit campaign {name}.yaml --out DIR" in capsys.readouterr().out
+        copied, bundled = load_campaign(tmp_path / f"{name}.yaml"), load_campaign(name)
+        assert digest_of(plan_of(copied)) == digest_of(plan_of(bundled))
+    with pytest.raises(NotFoundError, match="did you mean 'capture_campaign'"):
+        copy("capture_campain")
 
 
 def test_copy_keeps_existing_files(tmp_path: Path) -> None:

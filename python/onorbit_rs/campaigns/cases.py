@@ -71,7 +71,7 @@ def run_case(plan: Plan, case: int, check_stop: Callable[[], None] = lambda: Non
             built = build_world(scenario) if isinstance(scenario, WorldScenario) else build(scenario)
         check_stop()
         trace = built.simulation.run(scenario.simulation.duration, progress=lambda *_: check_stop())
-        numbers = numbers_of(_summary(trace, built, "complete"))
+        numbers = numbers_of(summary_of(trace, built, "complete"))
         return Outcome(case, "complete", None, values, numbers, kept_columns(trace, plan.keep))
     except Stopped:
         raise
@@ -84,7 +84,8 @@ class Stopped(Exception):
     """Ends the cases in progress when the campaign is stopped."""
 
 
-def _summary(trace: Any, built: Built | BuiltWorld, status: str) -> dict[str, Any]:
+def summary_of(trace: Any, built: Built | BuiltWorld, status: str) -> dict[str, Any]:
+    """Return the summary of a case."""
     if isinstance(trace, WorldTrace):
         assert isinstance(built, BuiltWorld)
         summary = summarize_world(trace, built, status=status)
@@ -103,7 +104,7 @@ def _numbers_before(error: Exception, built: Built | BuiltWorld | None, status: 
         return {}
     try:
         with np.errstate(all="ignore"):
-            return numbers_of(_summary(trace, built, status))
+            return numbers_of(summary_of(trace, built, status))
     except Exception:  # the error of the case is the one to report
         return {}
 

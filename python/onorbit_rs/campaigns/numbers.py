@@ -15,6 +15,13 @@ _CONSTANT = (
 """Texts that are the same for every case, or that identify a robot."""
 
 
+EVENT_NUMBERS = (
+    "count", "time_s", "impulse_ns", "angular_impulse_nms", "energy_lost_j", "linear_momentum_error_rel",
+    "angular_momentum_error_rel", "peak_force_n",
+)  # fmt: skip
+"""Numbers of an event that happened."""
+
+
 def numbers_of(summary: Mapping[str, Any]) -> dict[str, Any]:
     """Return the numbers, truth values and outcomes of a summary by name.
 

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from onorbit_rs.campaigns.cases import Outcome
-from onorbit_rs.campaigns.kept_columns import columns_of
 from onorbit_rs.campaigns.load import load_campaign
+from onorbit_rs.campaigns.nominal import check_nominal
 from onorbit_rs.campaigns.on_processes import on_processes
 from onorbit_rs.campaigns.on_threads import on_threads
 from onorbit_rs.campaigns.plan import Plan, digest_of, plan_of
@@ -22,14 +22,8 @@ from onorbit_rs.campaigns.storage import FAILURES, CampaignFolder, is_campaign
 from onorbit_rs.campaigns.table import check_conditions, rows_of, table_of
 from onorbit_rs.campaigns.write import write_campaign, write_cases, write_columns
 from onorbit_rs.common.progress import doing
-from onorbit_rs.common.suggestions import did_you_mean
-from onorbit_rs.common.user_code import announce
 from onorbit_rs.exceptions import DtypeError, InputError, OnOrbitError
-from onorbit_rs.scenario import WorldScenario
-from onorbit_rs.scenario.build import build
-from onorbit_rs.scenario.build_world import build_world
 from onorbit_rs.scenario.load import check
-from onorbit_rs.scenario.user_code import source_of
 from onorbit_rs.simulation.run import Run, run
 
 if TYPE_CHECKING:
@@ -93,7 +87,7 @@ def campaign(
     _check_cluster(cluster)
     loaded = load_campaign(source, cases=cases)
     plan = plan_of(loaded)
-    _check_nominal(plan, loaded)
+    check_nominal(plan, loaded)
     conditions = loaded.document.campaign.success
 
     def engine(numbers: Sequence[int]) -> AbstractContextManager[Iterator[Outcome]]:
@@ -136,7 +130,7 @@ def _run(
             add(outcome)
             shown.add(has_error=outcome.error is not None)
             if outcome.status == "complete":
-                check_conditions(outcome, conditions)
+                check_conditions([*outcome.values, *outcome.numbers], conditions)
 
 
 @contextmanager
@@ -244,24 +238,6 @@ def _check_cluster(cluster: str | None) -> None:
         "tcp://10.0.0.1:8786, or 'local'",
         name="cluster", got=cluster,
     )  # fmt: skip
-
-
-def _check_nominal(plan: Plan, loaded: LoadedCampaign) -> None:
-    """Build the nominal scenario, so that its errors and warnings are reported before any case runs."""
-    scenario = loaded.scenario
-    for part in scenario.user_classes:
-        announce(source_of(part, scenario.folder))
-    is_world = isinstance(scenario, WorldScenario)
-    built = build_world(scenario, runs_code=False) if is_world else build(scenario, runs_code=False)  # type: ignore[arg-type]
-    if not plan.keep.columns:
-        return
-    known = list(columns_of(built.simulation.run(scenario.simulation.time_step)))
-    for name in plan.keep.columns:
-        if name not in known:
-            hint = did_you_mean(name, known) or "; trace.npz of a run lists the columns"
-            raise InputError(
-                f"campaign.keep.columns: the trace has no column {name!r}{hint}", name="columns", got=name
-            )
 
 
 def _folder(

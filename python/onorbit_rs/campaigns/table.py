@@ -39,14 +39,19 @@ def is_success(outcome: Outcome, conditions: dict[str, Condition]) -> bool:
     return all(condition.holds(values.get(name)) for name, condition in conditions.items())
 
 
-def check_conditions(outcome: Outcome, conditions: dict[str, Condition]) -> None:
-    """Raise InputError if a condition names no column of a complete case; suggests the nearest name.
+OF_EVENTS = ("events.", "certificate.")
+"""Prefixes of columns that a case lacks if an event did not happen."""
 
-    An event that did not happen has no columns, so names of events are not checked.
+
+def check_conditions(
+    known: Sequence[str], conditions: dict[str, Condition], accepted: tuple[str, ...] = OF_EVENTS
+) -> None:
+    """Raise InputError if a condition names no ``known`` column; suggests the nearest name.
+
+    Names that begin with one of ``accepted`` are not checked.
     """
-    known = [*outcome.values, *outcome.numbers]
     for name in conditions:
-        if name not in known and not name.startswith("events."):
+        if name not in known and not name.startswith(accepted):
             raise InputError(
                 f"campaign.success: the results have no column {name!r}{did_you_mean(name, known)}",
                 name=name, got=name, expected=nearest(name, known),

@@ -20,6 +20,14 @@ def campaign_names(incomplete: str) -> list[str]:
     return [*_fitting(CAMPAIGNS.names(), incomplete), *_files(incomplete, (".yaml", ".yml"))]
 
 
+def bundled_names(incomplete: str) -> list[str]:
+    """Return the bundled scenarios and campaigns whose names begin with ``incomplete``."""
+    from onorbit_rs import scenarios
+    from onorbit_rs.campaigns.bundled import CAMPAIGNS
+
+    return _fitting([*scenarios.names(), *CAMPAIGNS.names()], incomplete)
+
+
 def robot_names(incomplete: str) -> list[str]:
     """Return the bundled robots and the URDF and xacro files whose names begin with ``incomplete``."""
     from onorbit_rs import robots
