@@ -1,4 +1,4 @@
-"""How objects show themselves in notebooks: a model as a tree, a run as a small report, a trace as a plot."""
+"""Displays of objects in notebooks: a model as a tree, a run as a short report, a trace as a plot."""
 
 from __future__ import annotations
 
