@@ -145,7 +145,7 @@ class _Pool:
             thread.join()
 
     def _work(self, executor: Executor) -> None:
-        """Run cases until the pool stops; wait if there are none, since another worker may return some."""
+        """Run cases until the pool stops; wait if no case is left, since another worker may return some."""
         try:
             while not self._is_stopped.is_set():
                 cases = self._board.take()
