@@ -85,7 +85,7 @@ class Stopped(Exception):
 
 
 def summary_of(trace: Any, built: Built | BuiltWorld, status: str) -> dict[str, Any]:
-    """Return the summary of a case."""
+    """Return the summary of a case; a complete case also has its clearances."""
     if isinstance(trace, WorldTrace):
         assert isinstance(built, BuiltWorld)
         summary = summarize_world(trace, built, status=status)

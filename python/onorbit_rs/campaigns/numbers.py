@@ -19,7 +19,7 @@ EVENT_NUMBERS = (
     "count", "time_s", "impulse_ns", "angular_impulse_nms", "energy_lost_j", "linear_momentum_error_rel",
     "angular_momentum_error_rel", "peak_force_n",
 )  # fmt: skip
-"""Numbers of an event that happened."""
+"""Keys of the numbers in the entry of an event that happened."""
 
 
 def numbers_of(summary: Mapping[str, Any]) -> dict[str, Any]:

@@ -75,10 +75,10 @@ def campaign(
     Raises
     ------
     OnOrbitError
-        Before any case runs: for an invalid campaign or scenario (``ScenarioError``), a folder that is not
-        empty, not writable or in use (``OutputFolderError``), or a missing package (``InputError``).
-        After the first complete case: for a condition of ``success`` that names no column (``InputError``).
-        Errors of single cases are not raised; they are in the column ``error``.
+        Before any case runs: for an invalid campaign or scenario (``ScenarioError``), a column of ``keep`` or
+        ``success`` that does not exist (``InputError``), a folder that is not empty, not writable or in use
+        (``OutputFolderError``), or a missing package (``InputError``). Errors of single cases are not raised;
+        they are in the column ``error``.
     CampaignError
         If the cluster does not answer, or the connection to it is lost. The cases on the disk are kept.
     OutputFolderError
