@@ -113,6 +113,7 @@ if TYPE_CHECKING:
     from onorbit_rs import engines, layouts, ros2
     from onorbit_rs.campaigns.run import campaign, campaign_case
     from onorbit_rs.clearance import Clearance, KeepOut, MinimumDistance, Violation, clearances
+    from onorbit_rs.displays.scene import show
     from onorbit_rs.figures.plot import plot
     from onorbit_rs.scenario import Scenario, WorldScenario
     from onorbit_rs.simulation.batch import run_batch
@@ -238,6 +239,7 @@ __all__ = [
     "run",
     "run_batch",
     "scenarios",
+    "show",
 ]
 
 __version__: str = build_info()["version"]
@@ -250,6 +252,7 @@ _LAZY = {
     "read_commands": "simulation.command_format", "replay_commands": "simulation.replay",
     "plot": "figures.plot", "Run": "simulation.run", "resume": "simulation.run", "run": "simulation.run",
     "run_batch": "simulation.batch", "RecordedRun": "tables", "read_run": "tables",
+    "show": "displays.scene",
 }  # fmt: skip
 """Module of each name that is imported on first access, since importing numpy and pydantic takes 0.5 s."""
 _LAZY_MODULES = ("engines", "layouts", "ros2", "scenario")
@@ -296,21 +299,35 @@ def _reduced_loop(loop: LoopTrace) -> tuple[Any, ...]:
 
 
 def _model_html(model: Model) -> str | None:
-    """Return the tree of a robot as HTML for notebooks; the module that draws it is imported on first use."""
+    """Return the tree of a robot for notebooks; imported on first use, as everything that shows an object."""
     from onorbit_rs.displays import model_html, or_plain
 
     return or_plain(model_html, model)
 
 
+def _world_html(world: World) -> str | None:
+    """Return the systems of a world and what acts on them, for notebooks."""
+    from onorbit_rs.displays import or_plain, world_html
+
+    return or_plain(world_html, world)
+
+
+def _simulation_html(simulation: Simulation) -> str | None:
+    """Return the systems and the settings of a simulation, for notebooks."""
+    from onorbit_rs.displays import or_plain, simulation_html
+
+    return or_plain(simulation_html, simulation)
+
+
 def _trace_png(trace: Trace | WorldTrace) -> bytes | None:
-    """Return a plot of a trace as PNG for notebooks."""
+    """Return a plot of a trace for notebooks."""
     from onorbit_rs.displays import or_plain, trace_png
 
     return or_plain(trace_png, trace)
 
 
 def _plain(shown: object) -> str:
-    """Return the class of an object with its constructor's arguments, for ``repr``."""
+    """Return the class of an object with the arguments it was built with."""
     from onorbit_rs.displays.plain import plain
 
     return plain(shown)
@@ -321,6 +338,8 @@ for _class in [found for found in globals().values() if isinstance(found, type)]
         _class.__repr__ = _plain  # type: ignore[assignment]
 
 Model._repr_html_ = _model_html  # type: ignore[attr-defined]
+World._repr_html_ = _world_html  # type: ignore[attr-defined]
+Simulation._repr_html_ = _simulation_html  # type: ignore[attr-defined]
 Trace._repr_png_ = _trace_png  # type: ignore[attr-defined]
 WorldTrace._repr_png_ = _trace_png  # type: ignore[attr-defined]
 

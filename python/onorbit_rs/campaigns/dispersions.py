@@ -1,4 +1,4 @@
-"""Dispersions, which change entries in the data of a scenario according to random numbers."""
+"""Dispersed values: what a draw changes in the data of a scenario."""
 
 from __future__ import annotations
 
@@ -19,10 +19,9 @@ How = Literal["set", "add", "scale"]
 
 @dataclass(frozen=True)
 class Dispersion(ABC):
-    """Base class of dispersed entries.
+    """A dispersed entry; ``names`` are the names of its values in the results.
 
-    ``at`` is the location of the entry in the data of the scenario, and ``names`` are the names of its
-    dispersed values in the results.
+    ``draws`` is the number of independent random numbers per case.
     """
 
     at: Location
@@ -36,24 +35,21 @@ class Dispersion(ABC):
 
     @property
     def draw_names(self) -> tuple[str, ...]:
-        """Names of the random numbers; each number depends on its name, the seed and the case."""
+        """Names of the random numbers, from which they are derived."""
         return self.names
 
     @abstractmethod
     def apply(self, data: dict[str, Any], us: Sequence[float]) -> tuple[Any, ...]:
-        """Change the data of a case; return the dispersed values, in the order of ``names``.
-
-        ``us`` are the random numbers, in (0, 1).
-        """
+        """Change the data of a case; return the dispersed values, in the order of ``names``."""
 
 
 def changed(how: How, nominal: float, drawn: float) -> float:
-    """Return the value of an entry whose nominal value is replaced, increased or multiplied by ``drawn``."""
+    """Return the value after a change."""
     return drawn if how == "set" else nominal + drawn if how == "add" else nominal * drawn
 
 
 def put(data: Any, at: Location, value: Any) -> None:
-    """Set one entry of plain data; create the mappings that contain it if they are missing."""
+    """Set one entry of plain data; mappings that do not exist are created."""
     for step in at[:-1]:
         data = data[step] if isinstance(step, int) else data.setdefault(step, {})
     data[at[-1]] = value
@@ -88,7 +84,7 @@ class ChoiceDispersion(Dispersion):
 
 @dataclass(frozen=True)
 class FactorDispersion(Dispersion):
-    """A vector or an inertia that is multiplied by one factor; a vector keeps its direction.
+    """One factor of a vector, which keeps its direction, or of an inertia.
 
     A positive factor of an inertia keeps the triangle inequality of its principal moments and the principal
     axes; mass and centre of mass do not change.
@@ -106,28 +102,24 @@ class FactorDispersion(Dispersion):
 
 @dataclass(frozen=True)
 class DirectionDispersion(Dispersion):
-    """A vector with a drawn magnitude and a direction that is uniformly distributed on the sphere."""
+    """A vector of drawn magnitude and of a direction with uniform distribution on the sphere."""
 
     how: How
     nominal: tuple[float, ...]
 
     @property
     def draws(self) -> int:
-        """Three: the magnitude, and the height and longitude of the direction."""
+        """Magnitude, height and longitude."""
         return 3
 
     @property
     def draw_names(self) -> tuple[str, ...]:
-        """Names of the magnitude, the height and the longitude."""
+        """Names of magnitude, height and longitude."""
         base = self.names[0].removesuffix("[0]")
         return (f"{base}/magnitude", f"{base}/height", f"{base}/longitude")
 
     def apply(self, data: dict[str, Any], us: Sequence[float]) -> tuple[Any, ...]:
-        """Set the vector, or add to it.
-
-        The height `z = 2 u − 1` of a point that is uniformly distributed on the sphere is uniformly
-        distributed (Archimedes).
-        """
+        """Set the vector, or add to it; `z = 2 u − 1` has uniform distribution on the sphere (Archimedes)."""
         choice = self.distribution.choice
         size = self.distribution.value(us[0]) if choice is None else float(self.distribution.pick(us[0]))
         z, longitude = 2.0 * us[1] - 1.0, 2.0 * math.pi * us[2]
@@ -148,7 +140,7 @@ class RotationDispersion(Dispersion):
 
     @property
     def draws(self) -> int:
-        """Three: the components of the rotation vector, or angle, height and longitude of its axis."""
+        """Components of the rotation vector, or angle, height and longitude of the axis."""
         return 3
 
     def apply(self, data: dict[str, Any], us: Sequence[float]) -> tuple[Any, ...]:

@@ -1,4 +1,4 @@
-"""Distributions of dispersed values, and the changes of entries of the scenario that use them."""
+"""Distributions of dispersed values, and the change that a draw makes to an entry of the scenario."""
 
 from __future__ import annotations
 
@@ -19,14 +19,13 @@ LEAST_PROBABILITY = 1e-9
 
 
 def _cdf(z: float) -> float:
-    """Return the cumulative distribution function of the standard normal distribution at ``z``."""
+    """Return the probability of values below ``z``, accurate also where it is small."""
     return 0.5 * math.erfc(-z / math.sqrt(2.0))
 
 
 class Amount(float):
-    """Number in SI units, with the text from which it was converted.
-
-    ``written`` is the text, and ``unit`` the unit in it, which is empty if there was none.
+    """Number in SI; ``unit`` is the unit in which it was written, empty if it had none, and ``written`` the
+    text before the conversion.
     """
 
     unit: str = ""
@@ -34,7 +33,7 @@ class Amount(float):
 
 
 def amount(value: Any) -> Amount:
-    """Convert a number, or a text with a unit of any dimension, to SI units; raises QuantityError."""
+    """Return a number, or text with a unit of any dimension, in SI; raises QuantityError."""
     if isinstance(value, Amount):
         return value
     number, unit = split_quantity(value)
@@ -64,7 +63,7 @@ class Distribution(Part):
     within: Pair | None = None
     """Least and largest value of ``normal``: the distribution is truncated, not clipped."""
     choice: Annotated[list[Any], Field(min_length=1)] | None = None
-    """Values of equal probability: numbers, texts, lists or mappings."""
+    """Values of equal probability; also text, lists and mappings."""
 
     @model_validator(mode="before")
     @classmethod
@@ -92,16 +91,15 @@ class Distribution(Part):
             raise invalid(f"the standard deviation is {self.normal[1].written}; it must be above zero")
         if self.within is not None and self._probability < LEAST_PROBABILITY:
             raise invalid(
-                f"the interval 'within' has a probability of {self._probability:.1e}, below "
+                f"the bounds of 'within' have a probability of {self._probability:.1e}, below "
                 f"{LEAST_PROBABILITY:g}; give bounds near the mean"
             )
         return self
 
     @cached_property
     def _standard_bounds(self) -> tuple[float, float, bool]:
-        """Cumulative probabilities of the bounds of ``within``, and whether the bounds are mirrored.
-
-        Bounds above the mean are mirrored about it, because probabilities close to one are inaccurate.
+        """Bounds of ``within`` as probabilities of the standard normal distribution; the sign of the values
+        is inverted (True) if the bounds are above the mean, where probabilities are close to one.
         """
         assert self.normal is not None
         assert self.within is not None
@@ -158,15 +156,15 @@ class Change(Part):
     synonyms: ClassVar = {"multiply": "scale", "factor": "scale", "offset": "add", "value": "set"}
 
     set: Distribution | None = None
-    """Distribution of the value that replaces the nominal one."""
+    """Distribution of a number that replaces the value."""
     add: Distribution | None = None
-    """Distribution of the number that is added to the nominal value."""
+    """Distribution of a number that is added to the value."""
     scale: Distribution | None = None
-    """Distribution of the factor by which the nominal value is multiplied."""
+    """Factor of the value."""
     vector: Literal["components", "direction"] = "components"
-    """How a vector is drawn: ``components`` draws each component on its own, in the axes of the entry.
-    ``direction`` draws a magnitude and a uniformly distributed direction for ``set`` and ``add``, and one
-    factor of the whole vector for ``scale``."""
+    """For a vector: ``components`` draws every component, in the axes of the entry; ``direction`` draws a
+    magnitude for ``set`` and ``add``, with a direction of uniform distribution on the sphere, and one factor
+    of the whole vector for ``scale``."""
 
     @model_validator(mode="before")
     @classmethod
@@ -175,9 +173,7 @@ class Change(Part):
             raise invalid("must be a mapping with 'set', 'add' or 'scale', such as {add: {normal: [0, 0.1]}}")
         for name in ("uniform", "normal", "choice"):
             if isinstance(value, dict) and name in value:
-                raise invalid(
-                    f"'{name}' belongs in 'set', 'add' or 'scale', such as {{add: {{{name}: [...]}}}}"
-                )
+                raise invalid(f"'{name}' belongs into 'set', 'add' or 'scale': {{add: {{{name}: [...]}}}}")
         return value
 
     @model_validator(mode="after")
@@ -191,7 +187,7 @@ class Change(Part):
 
     @property
     def how(self) -> Literal["set", "add", "scale"]:
-        """Kind of the change: ``set``, ``add`` or ``scale``."""
+        """Kind of the change."""
         return "set" if self.set is not None else "add" if self.add is not None else "scale"
 
     @property

@@ -41,10 +41,10 @@ class Executor(Protocol):
 
 
 class WorkerDied(Exception):
-    """Raised if a worker process ended; the message contains the signal or the exit code."""
+    """A worker process ended; the message says how."""
 
     def __init__(self, message: str, *, during_case: bool) -> None:
-        """Store the message, and whether a case had begun; otherwise the process was still starting."""
+        """Store whether a case had begun, or the process was still starting."""
         super().__init__(message)
         self.during_case = during_case
 
@@ -53,7 +53,7 @@ class Board:
     """Cases that wait for a worker; each case is taken by one worker at a time."""
 
     def __init__(self, cases: Sequence[int], workers: int, *, batch_s: float = BATCH_S) -> None:
-        """Store the cases, which are handed out in order, in batches of about ``batch_s`` seconds of work."""
+        """Store the cases, which are handed out in order, ``batch_s`` seconds of work at once."""
         self._batch_s = batch_s
         self._waiting = deque(cases)
         self._workers = workers
@@ -83,9 +83,7 @@ class Board:
             deaths[key] = deaths.get(key, 0) + 1
             if not during_case and deaths[key] >= MOST_FAILED_STARTS:
                 raise CampaignError(
-                    f"{deaths[key]} worker processes in a row ended before they began a case; see their "
-                    "messages on stderr",
-                    reason="worker",
+                    f"{deaths[key]} worker processes ended before they began a case", reason="worker"
                 )
             is_retried = not during_case or deaths[key] < MOST_DEATHS
             self._waiting.extendleft(reversed(cases if is_retried else rest))
@@ -94,7 +92,7 @@ class Board:
     def report(self, seconds: float) -> None:
         """Record the wall-clock time of a case."""
         with self._lock:
-            self._deaths.pop(-1, None)  # a worker has begun a case
+            self._deaths.pop(-1, None)  # workers do start
             self._mean_s = seconds if self._mean_s is None else 0.9 * self._mean_s + 0.1 * seconds
 
 
@@ -102,10 +100,9 @@ class Board:
 def pooled(
     cases: Sequence[int], workers: int, executor: Callable[[], Executor]
 ) -> Iterator[Iterator[Outcome]]:
-    """Run cases on ``workers`` threads during the block; yields an iterator of their outcomes.
+    """Run cases on ``workers`` threads during the block; yields an iterator of the outcomes as they come.
 
-    The outcomes are in the order in which the cases end. ``executor`` is called once per thread. After the
-    block, no case is in progress.
+    ``executor`` is called once per thread. After the block, no case is in progress.
     """
     pool = _Pool(cases, workers, executor)
     try:
@@ -145,7 +142,7 @@ class _Pool:
             thread.join()
 
     def _work(self, executor: Executor) -> None:
-        """Run cases until the pool stops; wait if no case is left, since another worker may return some."""
+        """Run cases until none waits; a worker that finds none stays, since another may give cases back."""
         try:
             while not self._is_stopped.is_set():
                 cases = self._board.take()

@@ -22,6 +22,7 @@ from onorbit_rs.campaigns.storage import FAILURES, CampaignFolder, is_campaign
 from onorbit_rs.campaigns.table import check_conditions, rows_of, table_of
 from onorbit_rs.campaigns.write import write_campaign, write_cases, write_columns
 from onorbit_rs.common.progress import doing
+from onorbit_rs.displays.campaign import described, show_tables
 from onorbit_rs.exceptions import DtypeError, InputError, OnOrbitError
 from onorbit_rs.scenario.load import check
 from onorbit_rs.simulation.run import Run, run
@@ -54,7 +55,7 @@ def campaign(
     out : str or path, optional
         Folder for ``cases.parquet``, ``campaign.yaml`` and ``report.html``. None writes nothing.
     cases : int, optional
-        Number of cases; replaces the number in the campaign.
+        Number of cases, in place of that of the campaign.
     workers : int, optional
         Number of threads, or of processes if Python code runs in every step or the cluster is ``local``.
         Default: the number of cores of the machine.
@@ -75,12 +76,11 @@ def campaign(
     Raises
     ------
     OnOrbitError
-        Before any case runs: for an invalid campaign or scenario (``ScenarioError``), a column of ``keep`` or
-        ``success`` that does not exist (``InputError``), a folder that is not empty, not writable or in use
-        (``OutputFolderError``), or a missing package (``InputError``). Errors of single cases are not raised;
-        they are in the column ``error``.
+        Before any case runs: for an invalid campaign or scenario (``ScenarioError``), a folder that is not
+        empty, not writable or in use (``OutputFolderError``), or a missing package (``InputError``).
+        Errors of a case are part of the table.
     CampaignError
-        If the cluster does not answer, or the connection to it is lost. The cases on the disk are kept.
+        If the cluster does not answer or disappears. The cases on the disk are kept.
     OutputFolderError
         If the disk is full; the cases on the disk are kept, and the same call continues the campaign.
     """
@@ -98,7 +98,7 @@ def campaign(
         if folder is None:
             found: list[Outcome] = []
             _run(plan, range(plan.cases), engine, conditions, found.append, quiet=quiet)
-            return table_of(rows_of(found, plan.value_names, conditions))
+            return _table(rows_of(found, plan.value_names, conditions), plan, conditions)
         done = folder.done()
         pending = [case for case in range(plan.cases) if case not in done]
         with _keeping(folder, plan.cases):
@@ -106,7 +106,7 @@ def campaign(
             folder.flush()
             kept = (outcome for outcome in folder.outcomes() if outcome.case < plan.cases)
             columns = rows_of(kept, plan.value_names, conditions)
-            table = table_of(columns)
+            table = _table(columns, plan, conditions)
             write_cases(folder, table)
             write_columns(folder, plan, range(plan.cases))
             write_failures(folder, plan, columns, quiet=quiet)
@@ -124,7 +124,7 @@ def _run(
     *,
     quiet: bool,
 ) -> None:
-    """Run cases, and pass each outcome to ``add`` as soon as its case ends."""
+    """Run cases and pass their outcomes to ``add`` as they come."""
     progress = campaign_progress(plan.name, plan.cases, plan.cases - len(cases), quiet=quiet)
     with progress as shown, engine(cases) as outcomes:
         for outcome in _complete(plan, outcomes):
@@ -134,9 +134,15 @@ def _run(
                 check_conditions([*outcome.values, *outcome.numbers], conditions)
 
 
+def _table(columns: dict[str, list[Any]], plan: Plan, conditions: dict[str, Condition]) -> pa.Table:
+    """Return the table, with what notebooks need to show it."""
+    show_tables()
+    return described(table_of(columns), plan.name, plan.value_names, conditions)
+
+
 @contextmanager
 def _keeping(folder: CampaignFolder, cases: int) -> Iterator[None]:
-    """Write the remaining outcomes at the end of the block; add the number of kept cases to errors."""
+    """Write the remaining outcomes at the end of the block; an error states how many cases are kept."""
     try:
         try:
             yield
@@ -175,7 +181,7 @@ def campaign_case(
         Folder for trace, summary, figures and recording; None writes nothing. In the folder of a campaign,
         the results are in ``case_NUMBER``.
     cases : int, optional
-        Number of cases; replaces the number in the campaign. The draws of ``latin_hypercube`` depend on it.
+        Number of cases, in place of that of the campaign; the draws of ``latin_hypercube`` depend on it.
     force : bool
         Replace the files of an earlier run.
     quiet : bool
@@ -188,9 +194,7 @@ def campaign_case(
     Raises
     ------
     OnOrbitError
-        As for :func:`onorbit_rs.run`, including the error with which the case ended in the campaign.
-    DtypeError, InputError
-        If ``case`` is not a whole number, or the campaign has no case of this number.
+        As for :func:`onorbit_rs.run`; if the case ended with an error in the campaign, it is raised.
     """
     plan = plan_of(load_campaign(source, cases=cases))
     if isinstance(case, bool) or not isinstance(case, int):
@@ -210,8 +214,7 @@ def campaign_case(
 def write_failures(folder: CampaignFolder, plan: Plan, columns: dict[str, list[Any]], *, quiet: bool) -> None:
     """Write the folder of an ordinary run for every case without success, unless it exists.
 
-    Each of these cases is run again, so that figures and recordings need not be kept in memory. An error of
-    the case is recorded in its folder and not raised.
+    The case is run again, so that figures and recording need not be kept in memory; its error is kept.
     """
     if plan.keep.failures != "full":
         return
@@ -262,7 +265,7 @@ def _folder(
 def _engine(
     plan: Plan, cases: Sequence[int], workers: int, cluster: str | None
 ) -> AbstractContextManager[Iterator[Outcome]]:
-    """Run cases on the engine that suits the scenario; the context is the iterator of their outcomes."""
+    """Return the iterator of outcomes of the engine that suits the scenario."""
     if not cases:
         return nullcontext(iter(()))
     if cluster is not None:
@@ -273,7 +276,7 @@ def _engine(
 
 
 def _complete(plan: Plan, outcomes: Iterator[Outcome]) -> Iterator[Outcome]:
-    """Yield the outcomes; add the dispersed values to those of cases whose worker died."""
+    """Yield outcomes with the dispersed values, which the case of a worker that died lacks."""
     for outcome in outcomes:
         if outcome.values:
             yield outcome

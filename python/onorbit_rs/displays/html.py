@@ -1,4 +1,4 @@
-"""HTML of a model and of a run for notebooks; names and other texts of users are escaped."""
+"""HTML of a model and of a run for notebooks; text of users is escaped."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from html import escape
 from typing import TYPE_CHECKING, Any
 
 from onorbit_rs.common.display_units import digits
+from onorbit_rs.displays.cells import rows_html
 from onorbit_rs.output.checks import checks, world_checks
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ _MOST_LINKS = 200
 
 
 def model_html(model: Model) -> str:
-    """Return the tree of links with masses, kg, and of joints with type and limits, deg or m, as HTML."""
+    """Return the tree of links with masses, kg, and of joints with type and limits, rad or m."""
     masses = {body.name: body.mass for body in model.bodies}
     children: dict[str, list[Joint]] = {}
     for joint in model.joints:
@@ -39,7 +40,7 @@ def model_html(model: Model) -> str:
 
 
 def run_html(run: Run) -> str:
-    """Return the checks of the certificate, a few numbers and the events of a run as an HTML table."""
+    """Return the verdict, the checks of the certificate, a few numbers and the events of a run."""
     from onorbit_rs.report.numbers import row
 
     summary = run.summary
@@ -53,20 +54,15 @@ def run_html(run: Run) -> str:
               for event in events[:_MOST_EVENTS]]  # fmt: skip
     if len(events) > _MOST_EVENTS:
         lines.append((f"{len(events) - _MOST_EVENTS} more events", "", "", ""))
-    body = "".join(f"<tr>{''.join(map(_cell, line))}</tr>" for line in lines)
-    return f"<div>{escape(repr(run))}<table>{body}</table></div>"
+    return f"<div>{escape(repr(run))}{rows_html(lines)}</div>"
 
 
 def trace_png(trace: Any) -> bytes:
-    """Return a plot of the base's position and of the joint positions as PNG."""
+    """Return a plot of the base's position and the joints as PNG."""
     from onorbit_rs.figures import as_bytes
     from onorbit_rs.figures.plot import plot
 
     return as_bytes(plot(trace), "png")
-
-
-def _cell(text: str) -> str:
-    return f'<td style="text-align:left">{escape(text)}</td>'
 
 
 def _number(value: Any) -> str:
@@ -74,7 +70,7 @@ def _number(value: Any) -> str:
 
 
 def _joint(joint: Joint) -> str:
-    """Return the name, the type and the limits, deg or m, of a joint as HTML."""
+    """Return name, type and limits of a joint, as HTML."""
     degrees = joint.kind == "revolute"
     limits = [value if value is not None and math.isfinite(value) else None
               for value in (joint.lower, joint.upper)]  # fmt: skip

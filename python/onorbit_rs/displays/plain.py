@@ -1,4 +1,4 @@
-"""Short ``repr`` for classes of the engine: the name of the class with its arguments or attributes."""
+"""Short ``repr`` of classes of the engine: the class with its constructor's arguments, or its attributes."""
 
 from __future__ import annotations
 
@@ -9,14 +9,13 @@ _MOST = 60
 
 
 def plain(shown: Any) -> str:
-    """Return a call such as ``Circle(radius=0.2)``, or the class with its attributes, as ``<Trace: …>``.
+    """Return ``Circle(radius=0.2, …)`` for an object that remembers its arguments, otherwise ``<Circle …>``.
 
-    The second form is for objects whose pickle does not contain the arguments of their constructor.
     Long arguments are replaced by their shape or shortened.
     """
     name = type(shown).__name__
     try:
-        arguments, keywords = _arguments(shown.__reduce__())
+        arguments, keywords = arguments_of(shown)
     except Exception:  # objects that cannot be pickled, such as views of a running simulation
         return f"<{name}{_sizes(shown)}>"
     parts = [_short(value) for value in arguments]
@@ -24,9 +23,12 @@ def plain(shown: Any) -> str:
     return f"{name}({', '.join(parts)})"
 
 
-def _arguments(reduced: Any) -> tuple[tuple[Any, ...], dict[str, Any]]:
-    """Return positional and keyword arguments of the constructor call in a pickle; raises without one."""
-    _, packed = reduced[:2]
+def arguments_of(shown: Any) -> tuple[tuple[Any, ...], dict[str, Any]]:
+    """Return positional and keyword arguments of the constructor of an object, taken from its pickled form.
+
+    Raises an error if the object cannot be pickled.
+    """
+    _, packed = shown.__reduce__()[:2]
     (_, arguments, keywords) = packed
     return tuple(arguments), dict(keywords or {})
 
@@ -41,7 +43,7 @@ def _short(value: Any) -> str:
 
 
 def _sizes(shown: Any) -> str:
-    """Return the attributes that are numbers, texts or arrays, the latter as shapes: ``: inertia (6, 6)``."""
+    """Return the numbers, texts and shapes of arrays among the attributes, ``: inertia (6, 6)``."""
     found = []
     for name in dir(type(shown)):
         try:

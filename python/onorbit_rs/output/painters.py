@@ -1,4 +1,6 @@
-"""Draws the figures of a run in this process and in helper processes at the same time."""
+"""Draws the figures of a run in this process and in helper processes, because each takes a large part of a
+second.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,7 @@ MOST_HELPERS = 3
 """Largest number of helper processes."""
 
 FIGURES_PER_HELPER = 3
-"""Number of figures per helper; with fewer, starting the process takes longer than it saves."""
+"""Smallest number of figures for which another process, which starts within a second, saves time."""
 
 _PROGRAM = "import sys; sys.path[:] = {path!r}; from onorbit_rs.figures.painter import main; main()"
 
@@ -45,7 +47,7 @@ class _Queue:
             return self._left.pop(0) if self._left else None
 
     def give_back(self, number: int) -> None:
-        """Put back the figure of a helper that ended before the figure was complete."""
+        """Return the figure of a helper that ended before the figure was complete."""
         with self._lock:
             self._left.insert(0, number)
 
@@ -74,7 +76,7 @@ class Painters:
             if number is not None:
                 self._queue.contents[number] = self._draw[number]()
             else:
-                for thread in self._threads:  # a helper that ends puts its figure back into the queue
+                for thread in self._threads:  # figures of a helper that ended return to the queue
                     thread.join()
                 self._threads = []
             while yielded in self._queue.contents:
@@ -121,7 +123,7 @@ def end(helper: subprocess.Popen[bytes]) -> None:
     helper.kill()
     helper.wait()
     for pipe in (helper.stdin, helper.stdout):
-        with suppress(OSError):  # closing flushes what the helper has not read
+        with suppress(OSError):  # closing writes the rest of a figure's number
             assert pipe is not None
             pipe.close()
 

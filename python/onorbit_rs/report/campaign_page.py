@@ -1,4 +1,4 @@
-"""Fills the report page of a campaign."""
+"""The report page of a campaign."""
 
 from __future__ import annotations
 

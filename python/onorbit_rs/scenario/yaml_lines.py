@@ -65,9 +65,7 @@ def parse_yaml(text: str, file: Path | None) -> tuple[Any, Lines]:
     """
     reader = _NodeReader(file)
     try:
-        with suppress(
-            RecursionError
-        ):  # so that it is not the context of the error below, which programs may pickle
+        with suppress(RecursionError):  # not the context of the error below: programs may pickle it
             loader = _Loader(text)
             root = loader.get_single_node()
             data = reader.value(loader, root, ()) if root is not None else None
