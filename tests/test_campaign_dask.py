@@ -143,7 +143,9 @@ if __name__ == "__main__":
 
     killer = threading.Thread(target=end)
     killer.start()
-    with pytest.raises(CampaignError, match=r"is gone; \d+ of 500 cases are kept"):
+    with pytest.raises(
+        CampaignError, match=r"was lost; check that its scheduler is running; \d+ of 500 cases are kept"
+    ):
         oo.campaign(campaign, out, cluster=address)
     killer.join()
     process.wait()
@@ -181,5 +183,5 @@ def test_a_transfer_that_is_cut_off_is_tried_again(status: str, monkeypatch: pyt
     if status == "running":
         assert tasks._result(future) == "outcome" and len(calls) == 3
     else:
-        with pytest.raises(CampaignError, match="is gone"):
+        with pytest.raises(CampaignError, match="was lost; check that its scheduler is running"):
             tasks._result(future)

@@ -219,7 +219,7 @@ def test_invalid_campaigns_are_refused(campaign: dict[str, Any], words: str) -> 
 
 def test_a_scenario_is_no_campaign(tmp_path: Path) -> None:
     file = write({"robot": "humanoid_torso", "simulation": {"duration": 1}}, tmp_path / "scenario.yaml")
-    with pytest.raises(ScenarioError, match="onorbit run runs a scenario"):
+    with pytest.raises(ScenarioError, match="to run a scenario, use 'onorbit run'"):
         load_campaign(file)
     with pytest.raises(oo.exceptions.NotFoundError, match="no such campaign"):
         load_campaign("nowhere")

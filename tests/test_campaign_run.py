@@ -307,7 +307,9 @@ def test_a_case_that_does_not_exist_is_refused() -> None:
             oo.campaign_case(spin(), case)
     with pytest.raises(NotFoundError):
         oo.campaign_case("nowhere", 1)
-    with pytest.raises(NotFoundError, match="'free_tumble' is a scenario, not a campaign; onorbit run runs"):
+    with pytest.raises(
+        NotFoundError, match="'free_tumble' is a scenario, not a campaign; run it with 'onorbit run'"
+    ):
         oo.campaign("free_tumble")
 
 

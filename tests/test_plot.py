@@ -42,7 +42,7 @@ def test_one_panel_per_unit_and_a_default(reach: oo.Run) -> None:
 def test_a_misspelt_column_names_the_nearest(reach: oo.Run) -> None:
     with pytest.raises(oo.exceptions.InputError, match=r"'q/positon'; did you mean 'q/position'"):
         oo.plot(reach, "q/positon")
-    with pytest.raises(oo.exceptions.InputError, match="cannot plot int"):
+    with pytest.raises(oo.exceptions.InputError, match="source is of type int"):
         oo.plot(3)  # type: ignore[arg-type]
 
 

@@ -146,8 +146,8 @@ def test_a_step_that_does_not_resolve_a_spring_is_a_warning(tmp_path: Path) -> N
     (coarse,) = warnings_of(scenario(tmp_path, joint, "2.1 ms"))
     assert coarse.startswith(
         "robot: the spring of joint 'spin' oscillates at 100 rad/s with the inertia at the start; with a "
-        "time_step of 0.0021 s, the product of both is 0.21, and rk4 changes the energy of the oscillation "
-        "by 4e-05 of its value in each period"
+        "time_step of 0.0021 s, the product of both is 0.21, and rk4 removes the fraction 4e-05 of the "
+        "energy of the oscillation in each period"
     )
     assert "use a time_step of at most 0.001 s" in coarse
     (unstable,) = warnings_of(scenario(tmp_path, joint, "29 ms"))

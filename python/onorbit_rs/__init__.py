@@ -299,7 +299,7 @@ def _reduced_loop(loop: LoopTrace) -> tuple[Any, ...]:
 
 
 def _model_html(model: Model) -> str | None:
-    """Return the tree of a robot for notebooks; imported on first use, as everything that shows an object."""
+    """Return the tree of a robot as HTML for notebooks; the module that draws it is imported on first use."""
     from onorbit_rs.displays import model_html, or_plain
 
     return or_plain(model_html, model)
@@ -320,14 +320,14 @@ def _simulation_html(simulation: Simulation) -> str | None:
 
 
 def _trace_png(trace: Trace | WorldTrace) -> bytes | None:
-    """Return a plot of a trace for notebooks."""
+    """Return a plot of a trace as PNG for notebooks."""
     from onorbit_rs.displays import or_plain, trace_png
 
     return or_plain(trace_png, trace)
 
 
 def _plain(shown: object) -> str:
-    """Return the class of an object with the arguments it was built with."""
+    """Return the class of an object with its constructor's arguments, for ``repr``."""
     from onorbit_rs.displays.plain import plain
 
     return plain(shown)

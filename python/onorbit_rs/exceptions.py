@@ -35,8 +35,8 @@ class                       built-in               fields: cause
 ``OutputNotWritableError``  ``PermissionError``    ``path``: the folder is not writable
 ``ScenarioError``           ``ValueError``         ``file, path, line``: an invalid scenario
 ``QuantityError``           ``ValueError``         ``text, expected``: ``"51.6 def"`` is not an angle
-``CampaignError``           ``RuntimeError``       ``reason``: a cluster that does not answer or is gone
-``ViewerError``             ``RuntimeError``       ``reason``: the viewer does not start, or cannot be displayed
+``CampaignError``           ``RuntimeError``       ``reason``: a cluster that does not answer or is lost
+``ViewerError``             ``RuntimeError``       ``reason``: the viewer does not start or cannot be shown
 ``Ros2Error``               ``RuntimeError``       ``reason``: a domain, messages, packages or a bag
 ==========================  =====================  ==========================================================
 
@@ -235,8 +235,8 @@ class SimulationError(OnOrbitError, ArithmeticError):
     """A run diverged, cannot continue or has ended.
 
     After a divergence, ``time`` (s), ``q`` and ``v`` are the last state, and ``trace`` has the rows before.
-    In Painlevé's case of a rigid contact, ``name`` is the contact, ``got`` its coefficient of friction and
-    ``expected`` the largest one with which it has a force.
+    For a rigid contact without a solution (Painlevé's paradox), ``name`` is the contact, ``got`` its friction
+    coefficient, and ``expected`` the largest coefficient for which a contact force exists.
     """
 
     time: Any = None
@@ -328,8 +328,8 @@ class ScenarioError(OnOrbitError, ValueError):
     """Invalid scenario, with the location of the error.
 
     ``file`` is the YAML file, ``path`` the key (``orbit.semi_major_axis``), ``line`` its line, from 1. If the
-    scenario has several errors, these are those of the first one, the message has a line for each, and
-    ``errors`` contains them all.
+    scenario has several errors, these attributes are those of the first error, the message has one line per
+    error, and ``errors`` contains all of them.
     """
 
     file: Any = None
@@ -346,7 +346,7 @@ class QuantityError(OnOrbitError, ValueError):
 
 
 class CampaignError(OnOrbitError, RuntimeError):
-    """The cluster of a campaign does not answer, has no workers, other software, or is gone."""
+    """The cluster of a campaign does not answer, has no workers or other software, or is lost."""
 
     reason: Any = None
 

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from onorbit_rs.campaigns.plan import Plan
 
 _BUILDING = threading.Lock()
-"""Held while a scenario is built, which changes the filters of warnings of the whole process."""
+"""Lock for building a scenario, which changes the warning filters of the whole process."""
 
 
 @dataclass(frozen=True)
@@ -81,11 +81,11 @@ def run_case(plan: Plan, case: int, check_stop: Callable[[], None] = lambda: Non
 
 
 class Stopped(Exception):
-    """Ends the cases in progress when the campaign is stopped."""
+    """Raised in the cases that are in progress when the campaign is stopped."""
 
 
 def summary_of(trace: Any, built: Built | BuiltWorld, status: str) -> dict[str, Any]:
-    """Return the summary of a case."""
+    """Return the summary of a case; a complete case also has its clearances."""
     if isinstance(trace, WorldTrace):
         assert isinstance(built, BuiltWorld)
         summary = summarize_world(trace, built, status=status)

@@ -1,4 +1,4 @@
-"""Dispersed values: what a draw changes in the data of a scenario."""
+"""Dispersions, which change entries in the data of a scenario according to random numbers."""
 
 from __future__ import annotations
 
@@ -19,9 +19,10 @@ How = Literal["set", "add", "scale"]
 
 @dataclass(frozen=True)
 class Dispersion(ABC):
-    """A dispersed entry; ``names`` are the names of its values in the results.
+    """Base class of dispersed entries.
 
-    ``draws`` is the number of independent random numbers per case.
+    ``at`` is the location of the entry in the data of the scenario, and ``names`` are the names of its
+    dispersed values in the results.
     """
 
     at: Location
@@ -35,21 +36,24 @@ class Dispersion(ABC):
 
     @property
     def draw_names(self) -> tuple[str, ...]:
-        """Names of the random numbers, from which they are derived."""
+        """Names of the random numbers; each number depends on its name, the seed and the case."""
         return self.names
 
     @abstractmethod
     def apply(self, data: dict[str, Any], us: Sequence[float]) -> tuple[Any, ...]:
-        """Change the data of a case; return the dispersed values, in the order of ``names``."""
+        """Change the data of a case; return the dispersed values, in the order of ``names``.
+
+        ``us`` are the random numbers, in (0, 1).
+        """
 
 
 def changed(how: How, nominal: float, drawn: float) -> float:
-    """Return the value after a change."""
+    """Return the value of an entry whose nominal value is replaced, increased or multiplied by ``drawn``."""
     return drawn if how == "set" else nominal + drawn if how == "add" else nominal * drawn
 
 
 def put(data: Any, at: Location, value: Any) -> None:
-    """Set one entry of plain data; mappings that do not exist are created."""
+    """Set one entry of plain data; create the mappings that contain it if they are missing."""
     for step in at[:-1]:
         data = data[step] if isinstance(step, int) else data.setdefault(step, {})
     data[at[-1]] = value
@@ -84,7 +88,7 @@ class ChoiceDispersion(Dispersion):
 
 @dataclass(frozen=True)
 class FactorDispersion(Dispersion):
-    """One factor of a vector, which keeps its direction, or of an inertia.
+    """A vector or an inertia that is multiplied by one factor; a vector keeps its direction.
 
     A positive factor of an inertia keeps the triangle inequality of its principal moments and the principal
     axes; mass and centre of mass do not change.
@@ -102,24 +106,28 @@ class FactorDispersion(Dispersion):
 
 @dataclass(frozen=True)
 class DirectionDispersion(Dispersion):
-    """A vector of drawn magnitude and of a direction with uniform distribution on the sphere."""
+    """A vector with a drawn magnitude and a direction that is uniformly distributed on the sphere."""
 
     how: How
     nominal: tuple[float, ...]
 
     @property
     def draws(self) -> int:
-        """Magnitude, height and longitude."""
+        """Three: the magnitude, and the height and longitude of the direction."""
         return 3
 
     @property
     def draw_names(self) -> tuple[str, ...]:
-        """Names of magnitude, height and longitude."""
+        """Names of the magnitude, the height and the longitude."""
         base = self.names[0].removesuffix("[0]")
         return (f"{base}/magnitude", f"{base}/height", f"{base}/longitude")
 
     def apply(self, data: dict[str, Any], us: Sequence[float]) -> tuple[Any, ...]:
-        """Set the vector, or add to it; `z = 2 u − 1` has uniform distribution on the sphere (Archimedes)."""
+        """Set the vector, or add to it.
+
+        The height `z = 2 u − 1` of a point that is uniformly distributed on the sphere is uniformly
+        distributed (Archimedes).
+        """
         choice = self.distribution.choice
         size = self.distribution.value(us[0]) if choice is None else float(self.distribution.pick(us[0]))
         z, longitude = 2.0 * us[1] - 1.0, 2.0 * math.pi * us[2]
@@ -140,7 +148,7 @@ class RotationDispersion(Dispersion):
 
     @property
     def draws(self) -> int:
-        """Components of the rotation vector, or angle, height and longitude of the axis."""
+        """Three: the components of the rotation vector, or angle, height and longitude of its axis."""
         return 3
 
     def apply(self, data: dict[str, Any], us: Sequence[float]) -> tuple[Any, ...]:

@@ -1,4 +1,4 @@
-"""Distributions of dispersed values, and the change that a draw makes to an entry of the scenario."""
+"""Distributions of dispersed values, and the changes of entries of the scenario that use them."""
 
 from __future__ import annotations
 
@@ -19,13 +19,14 @@ LEAST_PROBABILITY = 1e-9
 
 
 def _cdf(z: float) -> float:
-    """Return the probability of values below ``z``, accurate also where it is small."""
+    """Return the cumulative distribution function of the standard normal distribution at ``z``."""
     return 0.5 * math.erfc(-z / math.sqrt(2.0))
 
 
 class Amount(float):
-    """Number in SI; ``unit`` is the unit in which it was written, empty if it had none, and ``written`` the
-    text before the conversion.
+    """Number in SI units, with the text from which it was converted.
+
+    ``written`` is the text, and ``unit`` the unit in it, which is empty if there was none.
     """
 
     unit: str = ""
@@ -33,7 +34,7 @@ class Amount(float):
 
 
 def amount(value: Any) -> Amount:
-    """Return a number, or text with a unit of any dimension, in SI; raises QuantityError."""
+    """Convert a number, or a text with a unit of any dimension, to SI units; raises QuantityError."""
     if isinstance(value, Amount):
         return value
     number, unit = split_quantity(value)
@@ -63,7 +64,7 @@ class Distribution(Part):
     within: Pair | None = None
     """Least and largest value of ``normal``: the distribution is truncated, not clipped."""
     choice: Annotated[list[Any], Field(min_length=1)] | None = None
-    """Values of equal probability; also text, lists and mappings."""
+    """Values of equal probability: numbers, texts, lists or mappings."""
 
     @model_validator(mode="before")
     @classmethod
@@ -91,15 +92,16 @@ class Distribution(Part):
             raise invalid(f"the standard deviation is {self.normal[1].written}; it must be above zero")
         if self.within is not None and self._probability < LEAST_PROBABILITY:
             raise invalid(
-                f"the bounds of 'within' have a probability of {self._probability:.1e}, below "
+                f"the interval 'within' has a probability of {self._probability:.1e}, below "
                 f"{LEAST_PROBABILITY:g}; give bounds near the mean"
             )
         return self
 
     @cached_property
     def _standard_bounds(self) -> tuple[float, float, bool]:
-        """Bounds of ``within`` as probabilities of the standard normal distribution; the sign of the values
-        is inverted (True) if the bounds are above the mean, where probabilities are close to one.
+        """Cumulative probabilities of the bounds of ``within``, and whether the bounds are mirrored.
+
+        Bounds above the mean are mirrored about it, because probabilities close to one are inaccurate.
         """
         assert self.normal is not None
         assert self.within is not None
@@ -156,15 +158,15 @@ class Change(Part):
     synonyms: ClassVar = {"multiply": "scale", "factor": "scale", "offset": "add", "value": "set"}
 
     set: Distribution | None = None
-    """Distribution of a number that replaces the value."""
+    """Distribution of the value that replaces the nominal one."""
     add: Distribution | None = None
-    """Distribution of a number that is added to the value."""
+    """Distribution of the number that is added to the nominal value."""
     scale: Distribution | None = None
-    """Factor of the value."""
+    """Distribution of the factor by which the nominal value is multiplied."""
     vector: Literal["components", "direction"] = "components"
-    """For a vector: ``components`` draws every component, in the axes of the entry; ``direction`` draws a
-    magnitude for ``set`` and ``add``, with a direction of uniform distribution on the sphere, and one factor
-    of the whole vector for ``scale``."""
+    """How a vector is drawn: ``components`` draws each component on its own, in the axes of the entry.
+    ``direction`` draws a magnitude and a uniformly distributed direction for ``set`` and ``add``, and one
+    factor of the whole vector for ``scale``."""
 
     @model_validator(mode="before")
     @classmethod
@@ -173,7 +175,9 @@ class Change(Part):
             raise invalid("must be a mapping with 'set', 'add' or 'scale', such as {add: {normal: [0, 0.1]}}")
         for name in ("uniform", "normal", "choice"):
             if isinstance(value, dict) and name in value:
-                raise invalid(f"'{name}' belongs into 'set', 'add' or 'scale': {{add: {{{name}: [...]}}}}")
+                raise invalid(
+                    f"'{name}' belongs in 'set', 'add' or 'scale', such as {{add: {{{name}: [...]}}}}"
+                )
         return value
 
     @model_validator(mode="after")
@@ -187,7 +191,7 @@ class Change(Part):
 
     @property
     def how(self) -> Literal["set", "add", "scale"]:
-        """Kind of the change."""
+        """Kind of the change: ``set``, ``add`` or ``scale``."""
         return "set" if self.set is not None else "add" if self.add is not None else "scale"
 
     @property

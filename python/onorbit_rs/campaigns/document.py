@@ -19,7 +19,7 @@ MOST_CASES = 10**7
 
 
 class Keep(Part):
-    """What is kept of every case besides its summary."""
+    """Results that are kept of every case besides its summary."""
 
     synonyms: ClassVar = {"rate": "every", "period": "every", "failed": "failures"}
 
@@ -28,7 +28,7 @@ class Keep(Part):
     every: Annotated[Time, Positive] | None = None
     """Interval between two rows of ``columns``. Default: every recorded row."""
     failures: Literal["summary", "full"] = "summary"
-    """``full`` writes the folder of an ordinary run, with figures and recording, for every case without
+    """``full`` also writes the folder of an ordinary run, with figures and recording, for every case without
     success."""
 
     @model_validator(mode="before")
@@ -51,7 +51,7 @@ class Keep(Part):
 
 
 class Condition(Part):
-    """Condition on a value of a case; every given key must hold. A missing value does not fulfil it."""
+    """Condition on one value of a case: all given limits hold. It does not hold for a missing value."""
 
     synonyms: ClassVar = {
         "max": "at_most", "min": "at_least", "less_than": "below", "more_than": "above", "is": "equals",
@@ -66,11 +66,11 @@ class Condition(Part):
     @model_validator(mode="after")
     def _is_any(self) -> Self:
         if not self.model_fields_set:
-            raise invalid(f"has no condition; give one of {', '.join(self.yaml_keys())}")
+            raise invalid(f"has no limit; give at least one of {', '.join(self.yaml_keys())}")
         return self
 
     def holds(self, value: Any) -> bool:
-        """Return whether a value fulfils the condition."""
+        """Return True if the condition holds for a value; None is a missing value."""
         if value is None:
             return False
         if "equals" in self.model_fields_set and value != self.equals:
@@ -96,7 +96,7 @@ def _source(value: Any) -> Any:
 
 
 class Campaign(Part):
-    """Runs of one scenario with varied values."""
+    """Many runs of one scenario with dispersed values."""
 
     synonyms: ClassVar = {
         "runs": "cases", "samples": "cases", "n": "cases", "method": "sampling", "dispersions": "vary",
@@ -112,12 +112,12 @@ class Campaign(Part):
     sampling: Sampling = "random"
     """``random``, ``latin_hypercube`` or ``sobol``."""
     vary: Annotated[dict[str, Change], Field(min_length=1)]
-    """Changes by the path of the entry in the scenario."""
+    """Changes of entries of the scenario; the keys are the paths of the entries."""
     keep: Keep = Field(default_factory=Keep)
-    """``summary``, or a mapping that says what is kept besides the summary."""
+    """``summary``, or a mapping with further results to keep of every case."""
     success: dict[str, Condition] = Field(default_factory=dict)
-    """Conditions by the name of a column of ``cases.parquet``. A case is a success if it is complete, its
-    certificate passed, and all conditions hold."""
+    """Conditions on columns of ``cases.parquet``, by the name of the column. A case is a success if it is
+    complete, its certificate passed, and all conditions hold."""
 
 
 class CampaignDocument(Part):
@@ -134,7 +134,7 @@ class CampaignDocument(Part):
 
     @classmethod
     def checked(cls, data: dict[str, Any], file: Path | None, lines: Lines) -> CampaignDocument:
-        """Return a validated campaign; errors have the file, line and path of the entry."""
+        """Return a validated campaign; raises ScenarioError with the place of an invalid entry."""
         named = data if file is None or "name" in data else data | {"name": file.stem}
         try:
             document = cls.model_validate(named)

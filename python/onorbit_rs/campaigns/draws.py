@@ -1,4 +1,4 @@
-"""Random numbers of a campaign: a function of seed, case and path, independent of workers and order."""
+"""Random numbers of a campaign, which depend on seed, case and path, but not on workers or their order."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ _LAST = 1.0 - 2.0**-53
 
 
 def unit_random(seed: int, case: int, path: str) -> float:
-    """Return a number in (0, 1) of uniform distribution: 52 bits of BLAKE2b of ``seed/case/path``."""
+    """Return a uniformly distributed number in (0, 1): 52 bits of the BLAKE2b hash of ``seed/case/path``."""
     digest = hashlib.blake2b(f"{seed}/{case}/{path}".encode(), digest_size=8).digest()
     return float(((int.from_bytes(digest, "little") >> (64 - _BITS)) + 0.5) * 2.0**-_BITS)
 
 
 def unit_draw(sampling: Sampling, seed: int, cases: int, case: int, path: str, dimension: int) -> float:
-    """Return the number in (0, 1) of a case for one dispersed value.
+    """Return the random number in (0, 1) from which a case computes one dispersed value.
 
     Parameters
     ----------
@@ -92,13 +92,15 @@ def _sobol_points(cases: int, dimensions: int) -> NDArray[np.uint32]:
     qmc = _qmc()
     dimensions = min(dimensions, qmc.Sobol.MAXDIM)
     sequence = qmc.Sobol(dimensions, scramble=False, bits=_SOBOL_BITS)
-    points = sequence.random_base2((cases - 1).bit_length())[:cases]  # other numbers cause a warning
+    points = sequence.random_base2((cases - 1).bit_length())[
+        :cases
+    ]  # SciPy warns unless the number of points is a power of two
     table: NDArray[np.uint32] = (points * 2.0**_SOBOL_BITS).astype(np.uint32)
     return table
 
 
 def check_sampling(sampling: Sampling, dimensions: int) -> None:
-    """Raise InputError if SciPy is missing for ``sobol``, or has no sequence of so many dimensions."""
+    """Raise InputError if ``sobol`` is requested, but SciPy is missing or supports fewer dimensions."""
     if sampling == "sobol" and dimensions > (most := int(_qmc().Sobol.MAXDIM)):
         raise InputError(
             f"{dimensions} values are dispersed, but Sobol sequences have at most {most} dimensions; "

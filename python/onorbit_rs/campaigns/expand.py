@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from onorbit_rs.scenario.yaml_lines import Location
 
 _SAMPLE = 0.37
-"""Probability of the value that is validated for every dispersed entry."""
+"""Cumulative probability of the sample value that is validated for every dispersed entry."""
 
 
 class Expander:
@@ -76,10 +76,12 @@ class Expander:
         if "*" in path:
             given = [place for place in places if place.value is not None]
             if not given:
-                raise self.error(path, "none of these entries has a value in the scenario")
+                raise self.error(
+                    path, "no entry that matches has a value in the scenario; name one entry and use 'set'"
+                )
             return given
         if places[0].value is None and change.how != "set" and not places[0].is_attitude:
-            raise self.error(path, f"the scenario gives no value to {change.how}; use 'set'")
+            raise self.error(path, f"the scenario has no value that '{change.how}' can change; use 'set'")
         return places
 
     def _check_apart(self, found: list[tuple[Location, str]]) -> None:
@@ -118,7 +120,7 @@ class Expander:
             )
 
     def _vector(self, path: str, place: Place, change: Change) -> Iterator[Dispersion]:
-        """Yield one dispersion per component, or one of the whole vector."""
+        """Yield one dispersion per component, or one for the whole vector."""
         value = place.value
         entries = list(value.items() if isinstance(value, dict) else enumerate(value))
         if not entries or not all(_is_number(entry) for _, entry in entries):
@@ -149,7 +151,7 @@ class Expander:
         return NumberDispersion(place.at, (place.name,), distribution, how, nominal)
 
     def _inertia(self, path: str, place: Place, change: Change) -> Dispersion:
-        """Return the dispersion of an inertia by one factor, so that it remains that of a rigid body."""
+        """Return the dispersion of an inertia by one factor, which keeps the inertia physical."""
         if change.how != "scale":
             raise self.error(
                 path, f"an inertia is varied by 'scale', which keeps it physical, not by '{change.how}'"
@@ -157,7 +159,7 @@ class Expander:
         distribution = self._numeric(path, change)
         for bound in distribution.choice or distribution.bounds or ():
             if float(bound) <= 0.0:
-                raise self.error(path, f"a factor of {float(bound):g} of an inertia must be above zero")
+                raise self.error(path, f"the factor of an inertia is {float(bound):g}; it must be above zero")
         return FactorDispersion(place.at, (place.name,), distribution, place.value)
 
     def _attitude(self, path: str, place: Place, change: Change) -> Dispersion:
@@ -173,7 +175,7 @@ class Expander:
         return RotationDispersion(place.at, names, distribution, quat, change.vector == "direction")
 
     def _numeric(self, path: str, change: Change) -> Distribution:
-        """Return the distribution; the values of ``choice`` must be numbers, and factors without a unit."""
+        """Return the distribution; check that ``choice`` has numbers and that factors have no unit."""
         distribution = change.distribution
         if distribution.choice is not None:
             try:
@@ -212,7 +214,11 @@ class Expander:
     def _validated(
         self, path: str, place: Place, value: Any, is_about: Callable[[Exception], bool] = lambda _: True
     ) -> Any:
-        """Return the plain value of the field with the value in place, validated by the field."""
+        """Validate the field of an entry with a new value of the entry; return the plain value of the field.
+
+        A ValidationError is ignored unless ``is_about`` returns True for one of its causes; the value that
+        is returned is then not validated.
+        """
         owner, candidate = place.owner, place.candidate(value)
         assert owner is not None
         fields = adapter(owner, place.key)

@@ -1,4 +1,4 @@
-"""Columns of the trace that a campaign keeps, at a lower rate than they were recorded."""
+"""Columns of the trace that a campaign keeps, at the recorded or a lower rate."""
 
 from __future__ import annotations
 
@@ -51,8 +51,9 @@ def kept_columns(trace: Any, keep: Keep) -> dict[str, Floats]:
 
 
 def rows_every(time: Floats, every: float | None) -> NDArray[np.intp]:
-    """Return the indices of the first and the last row, and of the first row at or after each multiple of
-    ``every``, s.
+    """Return the indices of rows at intervals of ``every``, s; those of all rows if it is None.
+
+    They are the first row at or after each multiple of ``every`` from the first time, and the last row.
     """
     if every is None:
         return np.arange(len(time))

@@ -22,7 +22,9 @@ _MASSLESS = 1e-12
 
 
 def link_inertias(model: Model) -> dict[str, LinkValues]:
-    """Return mass, centre of mass and inertia of every link; a massless link has none of them.
+    """Return mass, kg, centre of mass, m, and inertia, kg m², of every link.
+
+    The inertia is about the centre of mass; both are in axes of the link. A massless link has no values.
 
     A body is a link together with all links that are fixed to it. For a link that shares a body, the values
     follow from the change of the body when the values of the link are replaced.

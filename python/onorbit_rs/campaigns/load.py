@@ -19,7 +19,7 @@ _OUTER, _INNER = CampaignDocument.yaml_keys(), Campaign.yaml_keys()
 
 
 class LoadedCampaign(NamedTuple):
-    """A campaign and its nominal scenario."""
+    """A validated campaign and its nominal scenario."""
 
     document: CampaignDocument
     scenario: AnyScenario
@@ -29,6 +29,8 @@ def load_campaign(
     source: str | os.PathLike[str] | Mapping[str, Any], *, cases: int | None = None
 ) -> LoadedCampaign:
     """Return the validated campaign of a bundled name, a file or a mapping, and its scenario.
+
+    ``cases`` replaces the number of cases of the campaign, unless it is None.
 
     Raises
     ------
@@ -49,7 +51,7 @@ def load_campaign(
         )  # fmt: skip
     if os.fspath(source) in SCENARIOS.names() and not Path(source).exists():
         raise NotFoundError(
-            f"{source!r} is a scenario, not a campaign; onorbit run runs it, and a campaign file names it: "
+            f"{source!r} is a scenario, not a campaign; run it with 'onorbit run', or write a campaign file: "
             f"{{campaign: {{scenario: {source}, cases: ..., vary: ...}}}}",
             path=str(source), kind="campaign",
         )  # fmt: skip
@@ -61,7 +63,7 @@ def load_campaign(
 def _checked(data: Any, file: Path | None, lines: Lines, cases: int | None) -> LoadedCampaign:
     if not isinstance(data, dict) or "campaign" not in data:
         is_scenario = isinstance(data, dict) and "simulation" in data
-        hint = "; onorbit run runs a scenario" if is_scenario else ""
+        hint = "; to run a scenario, use 'onorbit run'" if is_scenario else ""
         message = f"'campaign' is missing; give {{campaign: {{scenario: ..., cases: ..., vary: ...}}}}{hint}"
         raise scenario_error(message, file, None)
     if misplaced := next((key for key in data if key in _INNER and key not in _OUTER), None):

@@ -1,4 +1,4 @@
-"""Checks of a campaign on its nominal scenario, before any case runs."""
+"""Checks a campaign with its nominal scenario, before any case runs."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def check_nominal(plan: Plan, loaded: LoadedCampaign) -> None:
     OnOrbitError
         If the scenario cannot be built.
     InputError
-        If no trace has a column of ``keep.columns``, or the results have no column of ``success``.
+        If ``keep.columns`` or ``success`` names a column that the trace or the results do not have.
     """
     scenario, conditions = loaded.scenario, loaded.document.campaign.success
     for part in scenario.user_classes:

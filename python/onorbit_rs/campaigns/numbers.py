@@ -1,4 +1,4 @@
-"""Numbers of a case: the entries of its summary as one flat mapping."""
+"""Converts the summary of a case to one flat mapping of names to numbers."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ _CONSTANT = (
     "engine", "integrator", "onorbit_rs_version", "instruction_set", "python_version", "numpy_version",
     "mujoco_version", "inertial_axes", "velocity_eci_source", "gravity_mode", "robot_fingerprint",
 )  # fmt: skip
-"""Texts that are the same for every case, or that identify a robot."""
+"""Entries of the summary that are the same for every case, or that identify a robot."""
 
 
 EVENT_NUMBERS = (
     "count", "time_s", "impulse_ns", "angular_impulse_nms", "energy_lost_j", "linear_momentum_error_rel",
     "angular_momentum_error_rel", "peak_force_n",
 )  # fmt: skip
-"""Numbers of an event that happened."""
+"""Keys of the numbers in the entry of an event that happened."""
 
 
 def numbers_of(summary: Mapping[str, Any]) -> dict[str, Any]:

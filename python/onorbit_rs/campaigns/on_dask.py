@@ -1,4 +1,4 @@
-"""Engine for clusters: tasks of a few cases each on the workers of a Dask cluster."""
+"""Runs the cases of a campaign on a Dask cluster, in tasks of a few cases each."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ LOCAL = "local"
 """Address of a cluster that is started on this machine, for the campaign only."""
 _SETTINGS = {
     "distributed.worker.profile.enabled": False,  # samples the stacks of Python a hundred times a second
-    # replaces MALLOC_TRIM_THRESHOLD_, with which every case returns its memory and faults it in again
+    # replaces the default MALLOC_TRIM_THRESHOLD_, with which every case releases and maps memory again
     "distributed.nanny.pre-spawn-environ": {"OMP_NUM_THREADS": 1, "MALLOC_ARENA_MAX": 1},
 }
 """Settings of Dask for a cluster on this machine."""
@@ -45,7 +45,7 @@ _LONGEST_RESULT_S = 60.0
 _BATCH_S = 1.0
 """Wall-clock time of the cases of one task, s."""
 _AHEAD = 1
-"""Tasks that wait at every thread of the cluster, so that no thread waits for its next task."""
+"""Number of tasks in the queue of every thread of the cluster, so that no thread is idle."""
 
 
 def run_cases(plan: bytes, cases: list[int]) -> tuple[list[Outcome], float]:
@@ -55,7 +55,7 @@ def run_cases(plan: bytes, cases: list[int]) -> tuple[list[Outcome], float]:
     if (here := software()) != loaded.software:
         raise CampaignError(
             f"a worker of the cluster has {here}, but the campaign was started with {loaded.software}; use "
-            "equal versions and processors, so that a case has the same bits everywhere",
+            "workers of the same version and instruction set, so that a case has the same bits everywhere",
             reason="version",
         )
     found = [run_case(loaded, case) for case in cases]
@@ -82,7 +82,7 @@ def distributed() -> ModuleType:
 
 @contextmanager
 def on_dask(plan: Plan, cases: Sequence[int], workers: int, address: str) -> Iterator[Iterator[Outcome]]:
-    """Run cases on a Dask cluster during the block; yields an iterator of the outcomes as they come.
+    """Run cases on a Dask cluster during the block; yields an iterator of their outcomes as cases end.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def on_dask(plan: Plan, cases: Sequence[int], workers: int, address: str) -> Ite
     InputError
         If Dask is not installed.
     CampaignError
-        If no cluster answers at the address, it has no workers, or it disappears.
+        If no cluster answers at the address, it has no workers, or the connection to it is lost.
     """
     with _client(address, workers) as client:
         tasks = _Tasks(client, plan, cases, address)
@@ -116,7 +116,7 @@ def _client(address: str, workers: int) -> Iterator[Any]:
     module = distributed()
     logger = logging.getLogger("distributed")
     level = logger.level
-    logger.setLevel(logging.CRITICAL)  # deaths of workers are handled
+    logger.setLevel(logging.CRITICAL)  # the death of a worker is handled below
     try:
         if address == LOCAL:
             with (
@@ -153,7 +153,7 @@ def _client(address: str, workers: int) -> Iterator[Any]:
 
 
 class _Tasks:
-    """Tasks on the cluster: enough for all threads, so that the scheduler has little to do."""
+    """Tasks on the cluster, of which only as many are submitted as its threads need next."""
 
     def __init__(self, client: Any, plan: Plan, cases: Sequence[int], address: str) -> None:
         self._client, self._address = client, address
@@ -180,7 +180,7 @@ class _Tasks:
             self._client.cancel(list(self._running), force=True)
 
     def _submit(self) -> None:
-        """Submit tasks until every thread has one, and one waits for it."""
+        """Submit tasks until every thread has one to run and one in its queue."""
         while len(self._running) < (1 + _AHEAD) * self._threads and (cases := self._board.take()):
             future = self._client.submit(run_cases, self._plan, cases, pure=False)
             self._running[future] = cases
@@ -219,7 +219,7 @@ class _Tasks:
                 raise self._gone() from error
             raise CampaignError(
                 f"the cluster at {self._address} cannot run the cases: {type(error).__name__}: {error}; its "
-                "workers need onorbit_rs, Python and the files of the scenario as on this machine",
+                "workers need the same onorbit_rs, Python and scenario files as this machine",
                 reason="worker",
             ) from error
         self._board.report(seconds)
@@ -239,7 +239,10 @@ class _Tasks:
                 time.sleep(_RETRY_S)
 
     def _gone(self) -> CampaignError:
-        return CampaignError(f"the cluster at {self._address} is gone", reason="cluster gone")
+        return CampaignError(
+            f"the connection to the cluster at {self._address} was lost; check that its scheduler is running",
+            reason="cluster gone",
+        )
 
     def _wait_for_workers(self) -> int:
         """Return the number of threads of the cluster; waits for its first worker."""

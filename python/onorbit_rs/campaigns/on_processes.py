@@ -1,4 +1,4 @@
-"""Engine for cases with Python code in the loop: processes of this machine, connected by pipes."""
+"""Runs cases with Python code in the loop, in processes of this machine that are connected by pipes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _COMMAND = (sys.executable, "-m", "onorbit_rs.campaigns.worker")
 
 
 class _InProcess:
-    """Runs cases in a worker process, which is started for the first case and again after it died."""
+    """Runs cases in a worker process, which is started for the first case and restarted if it dies."""
 
     def __init__(self, greeting: bytes) -> None:
         self._greeting = greeting
@@ -70,7 +70,7 @@ class _InProcess:
         return process
 
     def _end(self, process: subprocess.Popen[bytes]) -> str:
-        """Forget a process that died; return how it ended."""
+        """Release a process that died; return a text with the signal or the exit code."""
         with self._lock:
             _kill(process)
             self._process = None
@@ -93,9 +93,9 @@ def _kill(process: subprocess.Popen[bytes]) -> None:
 
 @contextmanager
 def on_processes(plan: Plan, cases: Sequence[int], workers: int) -> Iterator[Iterator[Outcome]]:
-    """Run cases in processes during the block; yields an iterator of the outcomes as they come.
+    """Run cases in processes during the block; yields an iterator of their outcomes as cases end.
 
-    A worker that dies is replaced, and the cases that it had are run again.
+    A worker that dies is replaced, and its unfinished cases are run again.
     """
     greeting = packed((plan, sys.path))
     with pooled(cases, workers, lambda: _InProcess(greeting)) as outcomes:

@@ -1,4 +1,4 @@
-"""Engine for cases without Python code in the loop: threads of this process."""
+"""Runs cases without Python code in the loop, on threads of this process."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class _InThread:
-    """Runs cases in the calling thread; the engine leaves the GIL during a run."""
+    """Runs cases in the calling thread; the engine releases the GIL during a run."""
 
     def __init__(self, plan: Plan, stop: threading.Event) -> None:
         self._plan, self._stop = plan, stop
@@ -36,7 +36,7 @@ class _InThread:
 
 @contextmanager
 def on_threads(plan: Plan, cases: Sequence[int], workers: int) -> Iterator[Iterator[Outcome]]:
-    """Run cases on threads during the block; yields an iterator of the outcomes as they come."""
+    """Run cases on threads during the block; yields an iterator of their outcomes as cases end."""
     stop = threading.Event()
     with (
         warnings.catch_warnings(),

@@ -52,15 +52,15 @@ class Place:
 
     @property
     def is_attitude(self) -> bool:
-        """True if the entry is the rotation of a frame."""
+        """True if the entry is an attitude."""
         return self.owner is not None and self.inside == () and _holds(self.owner, self.key, Attitude)
 
     def inner(self, step: str | int, value: Any) -> Place:
-        """Return an entry of the value of this field."""
+        """Return the entry of key or index ``step`` in the value of this entry."""
         return replace(self, at=(*self.at, step), value=value, inside=(*self.inside, step))
 
     def candidate(self, value: Any) -> Any:
-        """Return the plain value of the field with another value of this entry."""
+        """Return the plain value of the whole field, in which this entry has another value."""
         return _with(self.field_value, self.inside, value)
 
 
@@ -96,7 +96,7 @@ def _with(value: Any, inside: Location, leaf: Any) -> Any:
 
 
 class Places:
-    """Entries of a scenario, by path."""
+    """Finds the entries of a scenario by path."""
 
     def __init__(self, scenario: AnyScenario) -> None:
         """Store the scenario; robots are built when links or joints are named."""
@@ -115,7 +115,7 @@ class Places:
         return list(self._matches(Place((), self.scenario), self._steps(path)))
 
     def _steps(self, path: str) -> list[str]:
-        """Return the keys of a path; the path of the only system of ``systems`` is that of a single robot."""
+        """Return the keys of a path; a path into the only system of ``systems`` becomes that of one robot."""
         steps = _steps(path)
         if isinstance(self.scenario, WorldScenario) or steps[:1] != ["systems"] or len(steps) < 3:
             return steps
@@ -163,7 +163,7 @@ class Places:
         return {}
 
     def _of_part(self, place: Place, part: Part) -> dict[str, Place]:
-        """Return the fields of a part; joints and links are those of the robot."""
+        """Return the fields of a part; those of joints and links have an entry for each of the robot."""
         plain = part.model_dump(mode="json", by_alias=True)
         found = {}
         for key, name in _names(type(part)).items():

@@ -42,7 +42,7 @@ class Plan:
     sampling: Sampling
     keep: Keep
     software: str
-    """Version and instruction set with which the campaign started."""
+    """Version and instruction set of the engine with which the campaign was started."""
     needs_processes: bool
     """True if Python code runs in every step, so that threads would not run in parallel."""
 
@@ -52,7 +52,7 @@ class Plan:
         return [name for dispersion in self.dispersions for name in dispersion.names]
 
     def case(self, number: int) -> CaseData:
-        """Return the scenario of a case, a function of the campaign and the number of the case."""
+        """Return the scenario of a case, which depends only on the campaign and the number of the case."""
         data = copy.deepcopy(self.scenario)
         values: dict[str, Any] = {}
         draws = self._draws(number)
@@ -100,13 +100,16 @@ def _complete_joints(data: dict[str, Any], dispersion: Dispersion, expander: Exp
 
 
 def software() -> str:
-    """Return version and instruction set, on which the bits of results depend."""
+    """Return the version and the instruction set of the engine, on which the bits of results depend."""
     info = _core.build_info()
     return f"onorbit_rs {info['version']}, {info['instruction_set']}"
 
 
 def digest_of(plan: Plan) -> str:
-    """Return a text that identifies the results of a campaign, apart from the number of random cases."""
+    """Return a digest of everything that determines the results of the cases of a campaign.
+
+    It depends on the number of cases only if the draws do, that is, unless ``sampling`` is ``random``.
+    """
     sampling = plan.sampling if plan.sampling == "random" else f"{plan.sampling} of {plan.cases}"
     content = {
         "scenario": plan.scenario, "seed": plan.seed, "sampling": sampling,

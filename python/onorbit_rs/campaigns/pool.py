@@ -41,10 +41,10 @@ class Executor(Protocol):
 
 
 class WorkerDied(Exception):
-    """A worker process ended; the message says how."""
+    """Raised if a worker process ended; the message contains the signal or the exit code."""
 
     def __init__(self, message: str, *, during_case: bool) -> None:
-        """Store whether a case had begun, or the process was still starting."""
+        """Store the message, and whether a case had begun; otherwise the process was still starting."""
         super().__init__(message)
         self.during_case = during_case
 
@@ -53,7 +53,7 @@ class Board:
     """Cases that wait for a worker; each case is taken by one worker at a time."""
 
     def __init__(self, cases: Sequence[int], workers: int, *, batch_s: float = BATCH_S) -> None:
-        """Store the cases, which are handed out in order, ``batch_s`` seconds of work at once."""
+        """Store the cases, which are handed out in order, in batches of about ``batch_s`` seconds of work."""
         self._batch_s = batch_s
         self._waiting = deque(cases)
         self._workers = workers
@@ -83,7 +83,9 @@ class Board:
             deaths[key] = deaths.get(key, 0) + 1
             if not during_case and deaths[key] >= MOST_FAILED_STARTS:
                 raise CampaignError(
-                    f"{deaths[key]} worker processes ended before they began a case", reason="worker"
+                    f"{deaths[key]} worker processes in a row ended before they began a case; see their "
+                    "messages on stderr",
+                    reason="worker",
                 )
             is_retried = not during_case or deaths[key] < MOST_DEATHS
             self._waiting.extendleft(reversed(cases if is_retried else rest))
@@ -92,7 +94,7 @@ class Board:
     def report(self, seconds: float) -> None:
         """Record the wall-clock time of a case."""
         with self._lock:
-            self._deaths.pop(-1, None)  # workers do start
+            self._deaths.pop(-1, None)  # a worker has begun a case
             self._mean_s = seconds if self._mean_s is None else 0.9 * self._mean_s + 0.1 * seconds
 
 
@@ -100,9 +102,10 @@ class Board:
 def pooled(
     cases: Sequence[int], workers: int, executor: Callable[[], Executor]
 ) -> Iterator[Iterator[Outcome]]:
-    """Run cases on ``workers`` threads during the block; yields an iterator of the outcomes as they come.
+    """Run cases on ``workers`` threads during the block; yields an iterator of their outcomes.
 
-    ``executor`` is called once per thread. After the block, no case is in progress.
+    The outcomes are in the order in which the cases end. ``executor`` is called once per thread. After the
+    block, no case is in progress.
     """
     pool = _Pool(cases, workers, executor)
     try:
@@ -142,7 +145,7 @@ class _Pool:
             thread.join()
 
     def _work(self, executor: Executor) -> None:
-        """Run cases until none waits; a worker that finds none stays, since another may give cases back."""
+        """Run cases until the pool stops; wait if no case is left, since another worker may return some."""
         try:
             while not self._is_stopped.is_set():
                 cases = self._board.take()

@@ -1,4 +1,4 @@
-"""Progress of a campaign: the number of cases, of errors, and the time left."""
+"""Progress of a campaign: the numbers of cases and of errors, and the time left."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ class CampaignProgress:
     """Counts cases; :meth:`add` is called after every case."""
 
     def __init__(self, cases: int, done: int, show: Callable[[str, float], None]) -> None:
-        """Store the number of cases and of those that an earlier process has run."""
+        """Store the number of all cases, the number of cases that were run before, and the display."""
         self._cases, self._done, self._show = cases, done, show
         self._first, self._began, self._errors = done, time.monotonic(), 0
 
     def add(self, *, has_error: bool) -> None:
-        """Count a case."""
+        """Count a case that has ended, and show the progress."""
         self._done += 1
         self._errors += has_error
         self._show(self.text(time.monotonic()), self._done / self._cases)
 
     def text(self, now: float) -> str:
-        """Return the state, such as ``12 of 100 cases, 1 error, 35 s left``."""
+        """Return the progress as text, such as ``12 of 100 cases, 1 error, 35 s left``."""
         errors = f", {count(self._errors, 'error', 'errors')}" if self._errors else ""
         return f"{self._done} of {self._cases} cases{errors}, {_duration(self._left_s(now))} left"
 
@@ -42,7 +42,7 @@ def campaign_progress(name: str, cases: int, done: int, *, quiet: bool) -> Itera
 
 
 def _duration(seconds: float) -> str:
-    """Return a duration in its natural unit, such as ``35 s`` or ``2 h 5 min``."""
+    """Return a duration as text in suitable units, such as ``35 s`` or ``2 h 5 min``."""
     if seconds < 90.0:
         return f"{seconds:.0f} s"
     minutes = round(seconds / 60.0)

@@ -46,7 +46,7 @@ def write_report(
     columns: dict[str, list[Any]],
     value_names: Sequence[str],
 ) -> None:
-    """Write the page from the columns of the table."""
+    """Write the report of a campaign from the columns of its table."""
     is_success = np.array(columns["success"], dtype=bool)
     found = results(columns, value_names, list(document.campaign.success))
     values = dispersed(columns, value_names)
@@ -87,7 +87,7 @@ def _percentiles(found: Sequence[Result]) -> HtmlTable:
     names = [heads.get(number, f"{number:g} %") for number in PERCENTILES]
     return HtmlTable(
         "Results",
-        "Every number of the summaries that varies, over the cases that have it.",
+        "Percentiles of every number of the summaries that varies, over the cases that have a value.",
         ["result", "unit", *names, "case of the largest"],
         list(percentile_rows(found)),
     )
@@ -99,9 +99,9 @@ def _sensitivities(ranked: Sequence[Sensitivity], found: Sequence[Result], cases
     shown = [one for one in ranked if abs(one.correlation) >= threshold][:_MOST_CASES]
     return HtmlTable(
         "Sensitivities",
-        "Spearman's rank correlations of dispersed values and results of at least "
-        f"{threshold:.2f}, the strongest first. Of independent columns, one in 20 exceeds this value by "
-        "chance.",
+        "Spearman's rank correlations of dispersed values and results with a magnitude of at least "
+        f"{threshold:.2f}, the strongest first. For independent columns, one in 20 correlations exceeds this "
+        "magnitude by chance.",
         ["result", "dispersed value", "rank correlation"],
         [[labels.get(one.result, one.result), one.value, one.correlation] for one in shown],
     )
@@ -126,7 +126,7 @@ def _failures(
 
 
 def reason(columns: dict[str, list[Any]], index: int, conditions: dict[str, Condition]) -> str:
-    """Return why a case is no success: its error, the failed checks, or the conditions that do not hold."""
+    """Return why a case is not a success: its error, failed checks, or conditions that do not hold."""
     if columns["error"][index]:
         return str(columns["error"][index])
     reasons = []
@@ -141,7 +141,7 @@ def reason(columns: dict[str, list[Any]], index: int, conditions: dict[str, Cond
 
 
 def _worst(shown: Sequence[Result]) -> HtmlTable:
-    """Return the cases with the largest values of each result."""
+    """Return a table of the cases with the largest values of each result."""
     rows = []
     for result in shown:
         order = np.argsort(-np.nan_to_num(result.values, nan=-np.inf), kind="stable")[:5]
@@ -177,7 +177,7 @@ def _pictures(
         yield _correlations(ranked, outcomes, series, len(is_success), figures.correlation_map)
         pairs = [one for one in ranked if one.result != "success"][:_MOST_PAIRS]
         if pairs:
-            about = "The strongest correlations; cases without success are orange."
+            about = "The pairs with the strongest correlations; cases without success are orange."
             shown_pairs = [(series[one.value], series[one.result]) for one in pairs]
             yield _picture("strongest", about, figures.strongest_pairs(shown_pairs, is_success))
 

@@ -34,7 +34,7 @@ class Result(NamedTuple):
 
 
 def results(columns: dict[str, list[Any]], value_names: Sequence[str], first: Sequence[str]) -> list[Result]:
-    """Return the results that vary, without checks and measured times; ``first`` are names to put first."""
+    """Return the results that vary, without checks and measured times; those in ``first`` come first."""
     names = [name for name in columns if name not in FIRST and name not in value_names]
     found = []
     for name in names:
@@ -48,7 +48,7 @@ def results(columns: dict[str, list[Any]], value_names: Sequence[str], first: Se
 
 
 def dispersed(columns: dict[str, list[Any]], value_names: Sequence[str]) -> list[Result]:
-    """Return the dispersed values that are numbers and vary; they have SI units, which are not shown."""
+    """Return the dispersed values that are numbers and vary, in SI units, which their labels do not show."""
     found = ((name, numeric(columns[name])) for name in value_names)
     return [
         Result(name, name, "", values) for name, values in found if values is not None and _varies(values)
@@ -61,9 +61,9 @@ def _varies(values: Floats) -> bool:
 
 
 def _labelled(name: str, values: Floats) -> Result:
-    """Return a result with the label of a single run; the owner of a world's number stays in front."""
+    """Return a result with the label that the report of a run uses, after the name of its system or event."""
     owner, _, last = name.rpartition(".")
-    described = row(last, True)  # a boolean result keeps the unit of the key, without a prefix
+    described = row(last, True)  # the value True keeps the unit of the key, without an SI prefix
     owner = owner.removeprefix("systems.").removeprefix("events.").removeprefix("contacts.")
     return Result(name, f"{owner}: {described.name}" if owner else described.name, described.unit, values)
 

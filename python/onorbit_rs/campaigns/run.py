@@ -55,7 +55,7 @@ def campaign(
     out : str or path, optional
         Folder for ``cases.parquet``, ``campaign.yaml`` and ``report.html``. None writes nothing.
     cases : int, optional
-        Number of cases, in place of that of the campaign.
+        Number of cases; replaces the number in the campaign.
     workers : int, optional
         Number of threads, or of processes if Python code runs in every step or the cluster is ``local``.
         Default: the number of cores of the machine.
@@ -76,11 +76,12 @@ def campaign(
     Raises
     ------
     OnOrbitError
-        Before any case runs: for an invalid campaign or scenario (``ScenarioError``), a folder that is not
-        empty, not writable or in use (``OutputFolderError``), or a missing package (``InputError``).
-        Errors of a case are part of the table.
+        Before any case runs: for an invalid campaign or scenario (``ScenarioError``), a column of ``keep`` or
+        ``success`` that does not exist (``InputError``), a folder that is not empty, not writable or in use
+        (``OutputFolderError``), or a missing package (``InputError``). Errors of single cases are not raised;
+        they are in the column ``error``.
     CampaignError
-        If the cluster does not answer or disappears. The cases on the disk are kept.
+        If the cluster does not answer, or the connection to it is lost. The cases on the disk are kept.
     OutputFolderError
         If the disk is full; the cases on the disk are kept, and the same call continues the campaign.
     """
@@ -124,7 +125,7 @@ def _run(
     *,
     quiet: bool,
 ) -> None:
-    """Run cases and pass their outcomes to ``add`` as they come."""
+    """Run cases, and pass each outcome to ``add`` as soon as its case ends."""
     progress = campaign_progress(plan.name, plan.cases, plan.cases - len(cases), quiet=quiet)
     with progress as shown, engine(cases) as outcomes:
         for outcome in _complete(plan, outcomes):
@@ -142,7 +143,7 @@ def _table(columns: dict[str, list[Any]], plan: Plan, conditions: dict[str, Cond
 
 @contextmanager
 def _keeping(folder: CampaignFolder, cases: int) -> Iterator[None]:
-    """Write the remaining outcomes at the end of the block; an error states how many cases are kept."""
+    """Write the remaining outcomes at the end of the block; add the number of kept cases to errors."""
     try:
         try:
             yield
@@ -181,7 +182,7 @@ def campaign_case(
         Folder for trace, summary, figures and recording; None writes nothing. In the folder of a campaign,
         the results are in ``case_NUMBER``.
     cases : int, optional
-        Number of cases, in place of that of the campaign; the draws of ``latin_hypercube`` depend on it.
+        Number of cases; replaces the number in the campaign. The draws of ``latin_hypercube`` depend on it.
     force : bool
         Replace the files of an earlier run.
     quiet : bool
@@ -194,7 +195,9 @@ def campaign_case(
     Raises
     ------
     OnOrbitError
-        As for :func:`onorbit_rs.run`; if the case ended with an error in the campaign, it is raised.
+        As for :func:`onorbit_rs.run`, including the error with which the case ended in the campaign.
+    DtypeError, InputError
+        If ``case`` is not a whole number, or the campaign has no case of this number.
     """
     plan = plan_of(load_campaign(source, cases=cases))
     if isinstance(case, bool) or not isinstance(case, int):
@@ -214,7 +217,8 @@ def campaign_case(
 def write_failures(folder: CampaignFolder, plan: Plan, columns: dict[str, list[Any]], *, quiet: bool) -> None:
     """Write the folder of an ordinary run for every case without success, unless it exists.
 
-    The case is run again, so that figures and recording need not be kept in memory; its error is kept.
+    Each of these cases is run again, so that figures and recordings need not be kept in memory. An error of
+    the case is recorded in its folder and not raised.
     """
     if plan.keep.failures != "full":
         return
@@ -265,7 +269,7 @@ def _folder(
 def _engine(
     plan: Plan, cases: Sequence[int], workers: int, cluster: str | None
 ) -> AbstractContextManager[Iterator[Outcome]]:
-    """Return the iterator of outcomes of the engine that suits the scenario."""
+    """Run cases on the engine that suits the scenario; the context is the iterator of their outcomes."""
     if not cases:
         return nullcontext(iter(()))
     if cluster is not None:
@@ -276,7 +280,7 @@ def _engine(
 
 
 def _complete(plan: Plan, outcomes: Iterator[Outcome]) -> Iterator[Outcome]:
-    """Yield outcomes with the dispersed values, which the case of a worker that died lacks."""
+    """Yield the outcomes; add the dispersed values to those of cases whose worker died."""
     for outcome in outcomes:
         if outcome.values:
             yield outcome

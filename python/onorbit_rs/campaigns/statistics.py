@@ -17,7 +17,7 @@ CONFIDENCE = 0.95
 
 
 class Success(NamedTuple):
-    """Fraction of successes with confidence bounds."""
+    """Numbers of successes and cases, with confidence bounds ``low`` and ``high`` of the success rate."""
 
     successes: int
     cases: int
@@ -57,9 +57,10 @@ def ranks(values: Floats) -> Floats:
 
 
 def rank_correlation(x: Floats, y: Floats) -> float | None:
-    """Return Spearman's rank correlation of two columns, (n,); None if one is constant or has < 3 rows.
+    """Return Spearman's rank correlation of two columns, (n,): the correlation of their ranks.
 
-    It is the correlation of the ranks.
+    Rows with a value that is not finite are ignored. Returns None if one column is constant, or if fewer than
+    three rows are left.
 
     Source: Spearman, The proof and measurement of association between two things, Am. J. Psych. 15, 1904.
     """

@@ -34,7 +34,7 @@ PARTS, FAILURES, IDENTITY = "cases", "failures", "identity.json"
 _PART = re.compile(r"part-(\d{8})\.json")
 _OWN = re.compile(rf"(part|columns)-\d{{8}}\.(json|npz)|{re.escape(IDENTITY)}|\.partial-[0-9a-f]+")
 _EVERY_S = 1.0
-"""Wall-clock time between two parts, s: the most work that a kill loses."""
+"""Wall-clock time between two parts, s; a process that is killed loses the outcomes since the last part."""
 _MOST_ROWS = 500
 _MOST_PARTS = 200
 """Number of parts above which they are merged into one."""
@@ -118,7 +118,7 @@ class CampaignFolder:
             temporary.write_bytes(content)
 
     def add(self, outcome: Outcome) -> None:
-        """Keep an outcome; it is on the disk after at most a second, or after :meth:`flush`."""
+        """Add an outcome; write all new ones if there are many, or the last write was over a second ago."""
         self._buffer.append(outcome)
         if len(self._buffer) >= _MOST_ROWS or time.monotonic() - self._last_write >= _EVERY_S:
             self.flush()
@@ -129,7 +129,7 @@ class CampaignFolder:
         Raises
         ------
         OutputFolderError
-            If the disk is full; all earlier parts are complete.
+            If the outcomes cannot be written, as on a full disk; all earlier parts are complete.
         """
         self._last_write = time.monotonic()
         if not self._buffer:
@@ -146,7 +146,7 @@ class CampaignFolder:
         return sorted(int(match[1]) for match in names if match)
 
     def _write_part(self, number: int, outcomes: list[Outcome]) -> None:
-        """Write a part; the columns first, since the outcomes make the part valid."""
+        """Write a part: first the columns, then the outcomes, whose file makes the part valid."""
         arrays = {f"{outcome.case}/{name}": values for outcome in outcomes
                   for name, values in outcome.columns.items()}  # fmt: skip
         if arrays:
@@ -171,7 +171,7 @@ class CampaignFolder:
         return self.path / PARTS / f"columns-{number:08d}.npz"
 
     def _merge(self, numbers: list[int]) -> None:
-        """Replace all parts by one, which has the next number; a kill in between leaves equal rows twice."""
+        """Replace all parts by one with the next number; if this is interrupted, some rows exist twice."""
         self._write_rows(numbers[-1] + 1, list(self._all_rows()))
         with output_errors(self.path / PARTS):
             for number in numbers:

@@ -27,7 +27,7 @@ CaseOption = Annotated[
     typer.Option(metavar="K", help="Run only case K, as an ordinary run with figures and recording."),
 ]
 CasesOption = Annotated[
-    int | None, typer.Option(metavar="N", help="Number of cases, in place of that of the file.")
+    int | None, typer.Option(metavar="N", help="Number of cases; replaces the number in the file.")
 ]
 WorkersOption = Annotated[
     int | None, typer.Option(metavar="N", help="Number of threads or processes; default: one per core.")
@@ -36,7 +36,7 @@ WorkersOption = Annotated[
 
 ClusterOption = Annotated[
     str | None,
-    typer.Option(metavar="ADDRESS", help="Use a Dask cluster: its address, or 'local' for this machine."),
+    typer.Option(metavar="ADDRESS", help="Address of a Dask cluster, or 'local' for one on this machine."),
 ]
 
 

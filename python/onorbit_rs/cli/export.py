@@ -25,10 +25,11 @@ def export(
         Path | None, typer.Option(metavar="FILE", help="Write a CCSDS attitude ephemeris.")
     ] = None,
     system: Annotated[
-        str | None, typer.Option(metavar="NAME", help="System of a world for tables and ephemerides.")
+        str | None,
+        typer.Option(metavar="NAME", help="System of a world whose table or ephemeris is written."),
     ] = None,
-    mcap: Annotated[Path | None, typer.Option(metavar="FILE", help="Write MCAP, for ROS 2.")] = None,
-    bag: Annotated[Path | None, typer.Option(metavar="FILE", help="Write a bag of ROS 1.")] = None,
+    mcap: Annotated[Path | None, typer.Option(metavar="FILE", help="Write an MCAP bag for ROS 2.")] = None,
+    bag: Annotated[Path | None, typer.Option(metavar="FILE", help="Write a bag for ROS 1.")] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
     quiet: QuietOption = False,
     as_json: JsonOption = False,

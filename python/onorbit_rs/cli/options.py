@@ -128,7 +128,7 @@ def scenario_changes(assignments: list[str] | None, duration: str | None = None)
     Raises
     ------
     InputError
-        If an assignment is not written ``KEY=VALUE``.
+        If an assignment is not of the form ``KEY=VALUE``, or its key or value cannot be read.
     """
     from onorbit_rs.scenario.changes import parsed_changes
 

@@ -31,12 +31,12 @@ class View:
     def of(
         cls, at: float | None, size: str | None, eye: str | None, look_at: str | None, *, is_collision: bool
     ) -> View:
-        """Return the options from their texts.
+        """Return the options, parsed from the texts on the command line.
 
         Raises
         ------
         InputError
-            If a size or a point is not written as expected, or the camera is at the point at which it looks.
+            If a size or a point is malformed, or the camera is at the point at which it looks.
         """
         view = cls(at, _size(size), _point("eye", eye), _point("look_at", look_at), is_collision)
         if view.eye is not None and view.eye == view.look_at:

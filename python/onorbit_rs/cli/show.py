@@ -20,7 +20,7 @@ def show(
     folder: FolderArgument,
     viewer: Annotated[bool, typer.Option(help="Open the recording if a display is available.")] = True,
     picture: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Draw the scene as PNG; needs no screen.")
+        Path | None, typer.Option(metavar="FILE", help="Draw the scene as PNG; requires no display.")
     ] = None,
     at: Annotated[
         float | None, typer.Option(metavar="SECONDS", help="Time of the picture; default: 0.")
@@ -32,7 +32,8 @@ def show(
         str | None, typer.Option(metavar="X,Y,Z", help="Camera relative to the base, m, axes of L or W.")
     ] = None,
     look_at: Annotated[
-        str | None, typer.Option(metavar="X,Y,Z", help="Middle of the picture, in the same axes, m.")
+        str | None,
+        typer.Option(metavar="X,Y,Z", help="Point in the middle of the picture, m, in the same axes."),
     ] = None,
     collision: Annotated[
         bool, typer.Option("--collision", help="Draw the collision shapes in the picture.")

@@ -1,4 +1,4 @@
-"""Reductions over the rows of long columns, which may be files mapped into memory, in blocks of rows."""
+"""Processes long columns, which may be files mapped into memory, in blocks of rows."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ from onorbit_rs.exceptions import NotFoundError
 class BundledFiles(NamedTuple):
     """Files of one kind in a folder of the package.
 
-    ``kind`` is the word for them in messages, such as ``robot``, and ``ending`` is that of their names.
+    ``kind`` is the word for such a file in messages, such as ``robot``, and ``ending`` the end of its name.
     """
 
     kind: str

@@ -1,4 +1,4 @@
-"""Objects sent between this process and processes that it has started, as pickles.
+"""Sends objects between this process and processes that it has started, as pickles.
 
 Reading a pickle can execute any code. Files are therefore never read with these functions, only pipes and
 connections between processes of the same user.

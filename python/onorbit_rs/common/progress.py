@@ -35,9 +35,7 @@ class Progress:
 
 @contextmanager
 def progress_bar(name: str, duration_s: float, *, quiet: bool) -> Iterator[Progress]:
-    """Show progress during the block unless ``quiet``: a bar on a terminal, otherwise lines; yield its
-    :class:`Progress`.
-    """
+    """Show the progress of a run during the block, unless ``quiet``; yields its :class:`Progress`."""
     if quiet or sys.stderr is None:
         yield Progress()
         return
@@ -77,7 +75,7 @@ def _drawn(bar: Bar) -> Iterator[Bar]:
 
 
 def _is_watched() -> bool:
-    """Return whether stderr is open and a terminal."""
+    """Return True if stderr is open and a terminal."""
     return sys.stderr is not None and sys.stderr.isatty()
 
 

@@ -12,11 +12,11 @@ FIRST_S = 3.0
 """Wall-clock time before the first line, s; shorter runs print none."""
 
 LONGEST_S = 60.0
-"""Longest wall-clock time between two lines, s; each interval is twice the last one, up to this."""
+"""Longest wall-clock time between two lines, s; each interval is twice the one before, up to this."""
 
 
 class ProgressLines:
-    """Prints lines on stderr, each a growing interval after the last one."""
+    """Prints lines on stderr at growing intervals."""
 
     def __init__(self, name: str) -> None:
         """Start the clock of a task that is called ``name`` in each line."""
@@ -32,7 +32,7 @@ class ProgressLines:
             self._interval_s = min(2.0 * self._interval_s, LONGEST_S)
 
     def begin(self, text: str) -> None:
-        """Print the name of a new task, which may take long, unless the last line is less than 1 s old."""
+        """Print the name of a new task, if an earlier line is at least 1 s old or the interval has passed."""
         self._interval_s = FIRST_S
         if self._has_printed and time.monotonic() - self._last >= 1.0:
             self._print(text)

@@ -1,4 +1,4 @@
-"""How objects show themselves in notebooks: models, worlds and simulations, runs, campaigns and traces."""
+"""Displays of objects in notebooks: models, worlds, simulations, runs, traces and campaigns."""
 
 from __future__ import annotations
 

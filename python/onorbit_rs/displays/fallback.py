@@ -1,4 +1,4 @@
-"""Keeps a failing display from hiding its object."""
+"""Shows the plain ``repr`` of an object in a notebook if its display fails."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ Shown = TypeVar("Shown")
 
 
 def or_plain(show: Callable[[Any], Shown], shown: Any) -> Shown | None:
-    """Return ``show(shown)``; None, for which notebooks show the plain ``repr``, if it raises an error."""
+    """Return ``show(shown)``, or None if it raises an error; notebooks then show the plain ``repr``."""
     try:
         return show(shown)
-    except Exception:  # a display is no reason to lose a result
+    except Exception:  # the object remains usable if its display fails
         return None

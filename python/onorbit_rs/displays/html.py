@@ -1,4 +1,4 @@
-"""HTML of a model and of a run for notebooks; text of users is escaped."""
+"""HTML of a model and of a run for notebooks; names and other texts of users are escaped."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _MOST_LINKS = 200
 
 
 def model_html(model: Model) -> str:
-    """Return the tree of links with masses, kg, and of joints with type and limits, rad or m."""
+    """Return the tree of links with masses, kg, and of joints with type and limits, deg or m, as HTML."""
     masses = {body.name: body.mass for body in model.bodies}
     children: dict[str, list[Joint]] = {}
     for joint in model.joints:
@@ -40,7 +40,7 @@ def model_html(model: Model) -> str:
 
 
 def run_html(run: Run) -> str:
-    """Return the verdict, the checks of the certificate, a few numbers and the events of a run."""
+    """Return the checks of the certificate, a few numbers and the events of a run as an HTML table."""
     from onorbit_rs.report.numbers import row
 
     summary = run.summary
@@ -58,7 +58,7 @@ def run_html(run: Run) -> str:
 
 
 def trace_png(trace: Any) -> bytes:
-    """Return a plot of the base's position and the joints as PNG."""
+    """Return a plot of the base's position and of the joint positions as PNG."""
     from onorbit_rs.figures import as_bytes
     from onorbit_rs.figures.plot import plot
 
@@ -70,7 +70,7 @@ def _number(value: Any) -> str:
 
 
 def _joint(joint: Joint) -> str:
-    """Return name, type and limits of a joint, as HTML."""
+    """Return the name, the type and the limits, deg or m, of a joint as HTML."""
     degrees = joint.kind == "revolute"
     limits = [value if value is not None and math.isfinite(value) else None
               for value in (joint.lower, joint.upper)]  # fmt: skip

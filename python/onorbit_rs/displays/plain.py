@@ -1,4 +1,4 @@
-"""Short ``repr`` of classes of the engine: the class with its constructor's arguments, or its attributes."""
+"""Short ``repr`` for classes of the engine: the name of the class with its arguments or attributes."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ _MOST = 60
 
 
 def plain(shown: Any) -> str:
-    """Return ``Circle(radius=0.2, …)`` for an object that remembers its arguments, otherwise ``<Circle …>``.
+    """Return a call such as ``Circle(radius=0.2)``, or the class with its attributes, as ``<Trace: …>``.
 
+    The second form is for objects whose pickle does not contain the arguments of their constructor.
     Long arguments are replaced by their shape or shortened.
     """
     name = type(shown).__name__
@@ -43,7 +44,7 @@ def _short(value: Any) -> str:
 
 
 def _sizes(shown: Any) -> str:
-    """Return the numbers, texts and shapes of arrays among the attributes, ``: inertia (6, 6)``."""
+    """Return the attributes that are numbers, texts or arrays, the latter as shapes: ``: inertia (6, 6)``."""
     found = []
     for name in dir(type(shown)):
         try:

@@ -1,4 +1,4 @@
-"""Figures of a campaign: distributions of results, success, rank correlations, and the strongest ones."""
+"""Figures of a campaign: distributions of results, success rate, and rank correlations."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Series(NamedTuple):
 
     @property
     def label(self) -> str:
-        """Label of an axis."""
+        """Label of an axis: the name, and the unit if there is one."""
         name = legend_name(self.name)
         return f"{name} [{self.unit}]" if self.unit else name
 

@@ -1,4 +1,4 @@
-"""Energy of a group of systems through its contacts."""
+"""Figure of the energies of a group of systems before, during and after contacts."""
 
 from __future__ import annotations
 
@@ -126,7 +126,7 @@ def _contacts(trace: WorldTrace, systems: Sequence[str]) -> dict[str, str]:
 def _largest_touch(
     time: Floats, elastic: Floats, events: Sequence[EventMark], contacts: Sequence[str]
 ) -> tuple[float, float] | None:
-    """Return the times, s, of the touch that contains the largest elastic energy; None without one."""
+    """Return begin and end, s, of the touch during which the elastic energy is largest; None without one."""
     at = float(time[np.argmax(elastic)])
     found = touches_of(events, float(time[-1]))
     within = (touch for name in contacts for touch in found.get(name, ()) if touch[0] <= at <= touch[1])

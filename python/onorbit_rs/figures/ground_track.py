@@ -75,7 +75,7 @@ def ground_track(trace: Trace, earth: Earth) -> Figure:
 
 
 def _add_land(world: Axes) -> None:
-    """Draw land and its coastlines, also beyond the date line, for a small track that crosses it."""
+    """Draw land with its coastlines; it is repeated beyond the date line for small tracks that cross it."""
     latitude, longitude = centers()
     every = 2  # cells of one degree
     share = smooth_land()[::every, ::every]

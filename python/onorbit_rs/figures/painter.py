@@ -27,7 +27,7 @@ def drawings_of(albums: Iterable[tuple[str, Subject | WorldSubject]]) -> Iterato
 def main() -> None:
     """Read albums, then numbers of figures, from stdin; write each figure as PNG, preceded by its length.
 
-    The process ends at the end of stdin, also if the parent was killed.
+    The process ends at the end of stdin, which it also reaches if its parent is killed.
     """
     albums = receive(sys.stdin.buffer)
     found = [drawing for _, drawing in drawings_of(albums)]

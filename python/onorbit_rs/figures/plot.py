@@ -42,7 +42,7 @@ _MOST_PANELS = 12
 
 
 class Line(NamedTuple):
-    """Values (T,) of one number per row at times (T,), s."""
+    """One recorded number: values (T,), in the unit of the label, at times (T,), s."""
 
     label: Label
     time: Floats
@@ -58,9 +58,9 @@ def plot(source: Run | RecordedRun | Trace | WorldTrace, *columns: str) -> Figur
         Result of :func:`onorbit_rs.run` or :func:`onorbit_rs.read_run`, or its trace. A trace alone does not
         contain the names of joints and bodies; the legend then has their numbers.
     *columns : str
-        Names such as ``tau`` (all joints), ``tau/elbow``, ``q/position/x``, or with wildcards,
-        ``*_error/*``. In a world they begin with the system, ``chaser/tau``. Without names, the
-        base's position in W, m, and the joint positions, rad or m, are plotted.
+        Names of columns, such as ``tau`` (all joints), ``tau/elbow`` and ``q/position/x``, or patterns with
+        wildcards, such as ``*_error/*``. In a world, names begin with the system, as in ``chaser/tau``.
+        Without names, the base's position in W, m, and the joint positions, rad or m, are plotted.
 
     Returns
     -------
@@ -70,7 +70,8 @@ def plot(source: Run | RecordedRun | Trace | WorldTrace, *columns: str) -> Figur
     Raises
     ------
     InputError
-        If a name matches no column; the message contains the most similar name.
+        If a name matches no column (the message contains the most similar name), the columns have more
+        than 12 different units, or ``source`` has another type.
 
     Examples
     --------
@@ -86,8 +87,8 @@ def plot(source: Run | RecordedRun | Trace | WorldTrace, *columns: str) -> Figur
         panels.setdefault(line.label.unit, []).append(line)
     if len(panels) > _MOST_PANELS:
         raise InputError(
-            f"the columns have {len(panels)} different units, at most {_MOST_PANELS} fit in a figure; name "
-            "fewer columns",
+            f"the columns have {len(panels)} different units, but a figure has at most {_MOST_PANELS} "
+            "panels; name fewer columns",
             name="columns", got=len(panels), expected=_MOST_PANELS,
         )  # fmt: skip
     heads = [_common([line.label.name for line in panel]) for panel in panels.values()]
@@ -112,7 +113,7 @@ def plot(source: Run | RecordedRun | Trace | WorldTrace, *columns: str) -> Figur
 
 
 def lines_of(source: Any) -> list[Line]:
-    """Return every number per row of a run or a trace, with its name and unit."""
+    """Return one line per recorded number of a run or a trace."""
     from onorbit_rs.tables import RecordedRun
 
     if isinstance(source, RecordedRun):
@@ -126,7 +127,7 @@ def lines_of(source: Any) -> list[Line]:
     trace = getattr(source, "trace", source)
     if not hasattr(trace, "time"):
         raise InputError(
-            f"cannot plot {type(source).__name__}; expected a run, a recorded run or a trace",
+            f"source is of type {type(source).__name__}; give a run, a recorded run or a trace",
             name="source", got=type(source).__name__, expected="Run, RecordedRun, Trace or WorldTrace",
         )  # fmt: skip
     if hasattr(trace, "names"):
@@ -174,7 +175,7 @@ def _in_system(label: Label, system: str) -> Label:
 
 
 def _fits(name: str, column: str, anywhere: bool = False) -> bool:
-    """Return whether a column name, or the name of a group of them, or a wildcard, selects a number."""
+    """Return True if ``column`` (a name, the beginning of one, or a pattern) selects the number ``name``."""
     heads = _heads(name)
     return any(head == column or fnmatchcase(head, column) or (anywhere and head.endswith(f"/{column}"))
                for head in heads)  # fmt: skip
@@ -187,7 +188,7 @@ def _heads(name: str) -> list[str]:
 
 
 def _common(names: Sequence[str]) -> str:
-    """Return the leading parts that all names share; the whole name if there is one."""
+    """Return the leading parts that all names share; the whole name if there is only one."""
     shared = [head for head in _heads(names[0]) if all(head in _heads(name) for name in names)]
     return shared[-1] if shared else ""
 

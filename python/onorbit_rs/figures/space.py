@@ -59,10 +59,10 @@ def legend_of(figure: Figure, axes: Axes3D, columns: int) -> None:
 
 
 def keep_labels_visible(figure: Figure, axes: Axes3D) -> None:
-    """Shrink and move 3-D axes so that all labels, which matplotlib places outside, are in their area.
+    """Shrink and move 3-D axes until their labels, which matplotlib places outside them, are in the figure.
 
-    The area is the position of the axes extended to the left, right and lower edge of the figure. Labels
-    keep their size, so that the axes are shrunk in several steps.
+    The labels may use the area of the axes, extended to the left, right and lower edges of the figure. Labels
+    keep their size, so the axes are shrunk in several steps.
     """
     area = axes.get_position()
     for _ in range(_STEPS):

@@ -137,8 +137,9 @@ def plot_lines(
 def plot_angles(
     axes: Axes, time: Floats, degrees: Floats, names: Sequence[str], colors: Sequence[str] = COLORS
 ) -> None:
-    """Draw continuous angles (T, n), degrees, between -180° and 180°; lines are interrupted where they pass
-    180°.
+    """Draw continuous angles (T, n), degrees, wrapped to the range from -180° to 180°.
+
+    A line is interrupted where it leaves the range.
     """
     for index, name in enumerate(names):
         x, y = thin(time, degrees[:, index])

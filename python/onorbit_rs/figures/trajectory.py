@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 _SHARES = (0.25, 0.5, 1.0)
-"""Strength of the robot's colours at the start, the middle and the end of the path."""
+"""Opacity of the robot's colours on white at the start, the middle and the end of the path."""
 
 _APART = 0.08
 """Displacement, in sizes of the robot, up to which a face of an earlier configuration is not drawn."""
@@ -38,9 +38,9 @@ NEARLY_STILL = 0.02
 
 
 def desired_trajectory(trace: Trace, model: Model) -> Figure:
-    """Draw Fig. 4: the robot at the start, the middle and the end of the desired path, in one frame, in W.
+    """Draw Fig. 4: the robot at the start, the middle and the end of the desired path, in axes of W.
 
-    The robot is paler at earlier times. The obtained path is drawn over the desired one.
+    The colours of the robot are paler at earlier times. The obtained path is drawn over the desired one.
     """
     desired = np.asarray(trace.reference_pose)[:, :3, 3]
     obtained = np.asarray(trace.tool_pose)[:, :3, 3]
@@ -99,7 +99,7 @@ def obtained_trajectory(trace: Trace) -> Figure:
 
 
 def _overlaid(drawn: list[tuple[Floats, Floats]]) -> tuple[Floats, Floats]:
-    """Return the faces of all configurations; those of earlier ones only where they differ from the last."""
+    """Return the faces of all configurations, except those of earlier ones near the same face of the last."""
     last, _ = drawn[-1]
     size = float(np.ptp(last.reshape(-1, 3), axis=0).max())
     found = []

@@ -48,7 +48,7 @@ def joint_loads(trace: Trace, built: Built) -> Summary:
 
 
 def efforts_at_limit(trace: Trace, built: Built) -> Summary:
-    """Return the names of the joints under PID or grip control whose effort reached its limit, as an entry.
+    """Return an entry with the names of the joints under PID or grip control that reached their effort limit.
 
     The limit is that of the controller or, if the controller has no limit, that of the robot. Without such a
     controller, there is no entry.

@@ -25,7 +25,7 @@ def split_names(arrays: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, li
     Raises
     ------
     ValueError
-        If an array of names contains numbers, or another one texts.
+        If an array of names contains numbers, or any other array contains texts.
     """
     columns, names = {}, {}
     for path, rows in arrays.items():

@@ -1,6 +1,4 @@
-"""Draws the figures of a run in this process and in helper processes, because each takes a large part of a
-second.
-"""
+"""Draws the figures of a run in this process and in helper processes at the same time."""
 
 from __future__ import annotations
 
@@ -21,7 +19,7 @@ MOST_HELPERS = 3
 """Largest number of helper processes."""
 
 FIGURES_PER_HELPER = 3
-"""Smallest number of figures for which another process, which starts within a second, saves time."""
+"""Number of figures per helper; with fewer, starting the process takes longer than it saves."""
 
 _PROGRAM = "import sys; sys.path[:] = {path!r}; from onorbit_rs.figures.painter import main; main()"
 
@@ -47,7 +45,7 @@ class _Queue:
             return self._left.pop(0) if self._left else None
 
     def give_back(self, number: int) -> None:
-        """Return the figure of a helper that ended before the figure was complete."""
+        """Put back the figure of a helper that ended before the figure was complete."""
         with self._lock:
             self._left.insert(0, number)
 
@@ -76,7 +74,7 @@ class Painters:
             if number is not None:
                 self._queue.contents[number] = self._draw[number]()
             else:
-                for thread in self._threads:  # figures of a helper that ended return to the queue
+                for thread in self._threads:  # a helper that ends puts its figure back into the queue
                     thread.join()
                 self._threads = []
             while yielded in self._queue.contents:
@@ -123,7 +121,7 @@ def end(helper: subprocess.Popen[bytes]) -> None:
     helper.kill()
     helper.wait()
     for pipe in (helper.stdin, helper.stdout):
-        with suppress(OSError):  # closing writes the rest of a figure's number
+        with suppress(OSError):  # closing flushes what the helper has not read
             assert pipe is not None
             pipe.close()
 

@@ -129,8 +129,9 @@ class SavedRun:
             raise _damaged(self.folder / TRACE, "trace", error) from error
 
     def columns(self) -> tuple[dict[str, Any], dict[str, list[str]]]:
-        """Return the columns in ``trace.npz``, and the names of joints and bodies, by path; raises the errors
-        of :func:`read_trace`.
+        """Return the columns in ``trace.npz`` by path, and the names of joints and bodies by path.
+
+        Raises the errors of :func:`read_trace`.
         """
         return self._columns_and_names({"time"})
 

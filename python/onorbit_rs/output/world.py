@@ -73,7 +73,7 @@ def _missed(trace: WorldTrace, built: BuiltWorld) -> list[str]:
 
 
 def _reason(event: Event, latches: dict[str, Summary]) -> str:
-    """Return what an event that did not happen lacked."""
+    """Return the reason why an event did not happen."""
     if event.when.latch is None or event.name not in latches:
         return "check its condition 'when'"
     found, (distance, angle) = latches[event.name], event.when.latch.within

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 
 class Pictures(NamedTuple):
-    """Pictures that a run writes."""
+    """Selection of the pictures that a run writes."""
 
     figures: bool = True
     recording: bool = True
@@ -43,7 +43,7 @@ ALL = Pictures()
 
 
 def write_scenario(folder: OutputFolder, scenario: Scenario | WorldScenario) -> None:
-    """Write ``scenario.yaml`` with all defaults, SI units and absolute paths, to run from any folder."""
+    """Write ``scenario.yaml`` with all defaults, SI units and absolute paths; it runs from any folder."""
     source = scenario.file or "Python"
     header = f"# resolved by onorbit_rs from {source}; run it again with: onorbit run scenario.yaml\n"
     with folder.writing(SCENARIO) as path:
@@ -63,8 +63,10 @@ def write_trace(
     built: Built | BuiltWorld,
     more: Mapping[str, Any] = MappingProxyType({}),
 ) -> None:
-    """Write ``trace.npz``: every column of the trace by path, the columns ``more``, and the names of the
-    joints and bodies of each robot.
+    """Write ``trace.npz``.
+
+    It contains every column of the trace by path, the columns ``more``, and the names of the joints and
+    bodies of each robot.
     """
     alone = built.systems if isinstance(built, BuiltWorld) else {"": built}
     names = {path: values for system, one in alone.items()
@@ -127,7 +129,7 @@ def _png(drawing: Drawing) -> bytes:
 
 
 def _albums(trace: Trace | WorldTrace, summary: dict[str, Any], built: Built | BuiltWorld) -> list[Album]:
-    """Return the subjects of the figures: those of all systems together, and of each; none for one row."""
+    """Return the figures of all systems together and those of each system; a trace of one row has none."""
     from onorbit_rs import figures  # imported here because matplotlib takes a second to import
 
     def alone(prefix: str, own: Trace, one: Built) -> list[Album]:

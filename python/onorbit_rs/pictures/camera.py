@@ -1,4 +1,4 @@
-"""Perspective camera, and its position from which a scene fills a picture."""
+"""Perspective camera, and its placement so that a scene fills the picture."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Camera:
 
     @classmethod
     def looking(cls, eye: Floats, at: Floats, up: Floats, size: tuple[int, int]) -> Camera:
-        """Return a camera at ``eye`` that looks at ``at``; ``up`` points up in the picture."""
+        """Return a camera at ``eye``, m, that looks at the point ``at``, m, with ``up`` upwards."""
         back = (eye - at) / np.linalg.norm(eye - at)
         right = np.cross(up, back)
         if np.linalg.norm(right) < 1e-6:  # the camera looks along ``up``
@@ -53,11 +53,11 @@ class Camera:
 
     @classmethod
     def around(cls, points: Floats, direction: Floats, up: Floats, size: tuple[int, int]) -> Camera:
-        """Return a camera in a ``direction`` from the points (k, 3), m, all of which are in the picture."""
+        """Return a camera that lies in a direction from points (k, 3), m, and sees all of them."""
         center = (points.min(axis=0) + points.max(axis=0)) / 2.0
         view = cls.looking(center + direction, center, up, size)
         x, y, z = ((points - center) @ view.axes.T).T
-        # d - z is the depth of a point, and |x| / (d - z) must be at most its tangent in the picture
+        # d - z is the depth of a point, and |x| / (d - z) at most the tangent of the filled half angle
         tangents = _FILLED * np.array([view.width, view.height]) / 2.0 / view.focal
         distance = max(float((z + np.abs(x) / tangents[0]).max()), float((z + np.abs(y) / tangents[1]).max()))
         return cls(center + distance * view.axes[2], view.axes, *size)
@@ -74,7 +74,7 @@ class Camera:
     def project(self, points: Floats) -> Floats:
         """Return pixels x (to the right) and y (down) and the inverse depth, 1/m, of points (..., 3), m.
 
-        The inverse depth is not positive for a point behind the camera, whose pixel is meaningless.
+        The inverse depth is zero for a point that is not in front of the camera; its pixel is meaningless.
         """
         x, y, z = np.moveaxis((points - self.position) @ self.axes.T, -1, 0)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -89,7 +89,7 @@ class Camera:
         )
 
     def rays(self, rows: NDArray[np.int64]) -> Floats:
-        """Return the directions (rows, width, 3), not normalized, through the centres of pixels."""
+        """Return the directions (k, width, 3), not normalized, through the centres of pixels in k rows."""
         x = (np.arange(self.width) + 0.5 - self.width / 2.0) / self.focal
         y = (self.height / 2.0 - rows - 0.5) / self.focal
         right, up, back = self.axes

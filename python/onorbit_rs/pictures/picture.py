@@ -41,7 +41,7 @@ _PATHS = {"desired": (0.94, 0.94, 0.94), "obtained": (1.0, 0.38, 0.25)}
 _WIRE = (0.35, 0.88, 0.80)
 _MOST_POINTS = 2000
 _HORIZON_BELOW_DEG = 9.0
-"""Angle between the line of sight and the horizon of the Earth below it."""
+"""Angle from the horizon of the Earth up to the line of sight, degrees."""
 
 
 def draw_picture(
@@ -57,16 +57,22 @@ def draw_picture(
     Parameters
     ----------
     scene : Scene
-        Robots at a time.
+        Robots at one time.
     size : tuple of int
         Width and height, pixels.
     eye : (3,) array, optional
         Position of the camera relative to the base of the first robot, m, in axes of the scene; default: a
-        place from which all robots near the first one are visible.
+        position from which all robots near the first one are visible.
     look_at : (3,) array, optional
-        Point in the middle of the picture, in the same axes, m; default: the middle of these robots.
+        Point in the middle of the picture, relative to the same origin and in the same axes, m; default: the
+        middle of the first robot and the robots near it.
     has_collisions : bool
         Draw the edges of collision shapes.
+
+    Returns
+    -------
+    bytes
+        Content of a PNG file.
     """
     camera = _camera(scene, size, eye, look_at)
     sun, image = _background(scene, camera)
@@ -92,7 +98,7 @@ def draw_picture(
 
 
 def _camera(scene: Scene, size: tuple[int, int], eye: Floats | None, look_at: Floats | None) -> Camera:
-    """Return the camera at ``eye``, or at a place from which the robots fill the picture."""
+    """Return the camera at ``eye``, or at a position from which the robots fill the picture."""
     corners = scene.corners()
     up = (
         np.array([1.0, 0.0, 0.0]) if scene.is_local else scene.rot_sb[:, 2]
@@ -112,7 +118,7 @@ def _camera(scene: Scene, size: tuple[int, int], eye: Floats | None, look_at: Fl
 
 
 def _elevation_deg(scene: Scene) -> float:
-    """Return the angle of the camera above the local horizontal for which the Earth's horizon is visible."""
+    """Return the elevation of the camera, degrees, at which the Earth's horizon is in the picture."""
     if not scene.about_earth:
         return 20.0
     ratio = 1e3 * EARTH_RADIUS_KM / float(np.linalg.norm(scene.place_eci))

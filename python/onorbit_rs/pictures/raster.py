@@ -18,8 +18,10 @@ _NEARER = 1.002
 
 
 class Canvas:
-    """Colours (height, width, 3), 0 to 1, and inverse depths, 1/m, of the nearest surface of each pixel; the
-    inverse depth is zero where nothing was drawn.
+    """Picture of the nearest surface in each pixel.
+
+    ``color`` (height, width, 3) is from 0 to 1. ``inverse_depth`` (height, width), 1/m, is zero where nothing
+    was drawn.
     """
 
     def __init__(self, camera: Camera) -> None:
@@ -48,7 +50,7 @@ class Canvas:
         self._fill(triangles, np.tile(color, (len(triangles), 1)))
 
     def _fill(self, projected: Floats, colors: Floats) -> None:
-        """Fill triangles (n, 3, 3): pixels x and y, and inverse depth, which is linear in the picture."""
+        """Fill triangles (n, 3, 3) of pixels x and y and inverse depth, which is linear in x and y."""
         size = np.array([self._camera.width, self._camera.height])
         low = np.ceil(projected[..., :2].min(axis=1) - 0.5).clip(0, size)
         high = np.ceil(projected[..., :2].max(axis=1) - 0.5).clip(0, size)
@@ -68,7 +70,7 @@ class Canvas:
 
 
 def _planes(projected: Floats) -> Floats:
-    """Return the coefficients (n, 4, 3) of x, y and 1 of barycentric coordinates and inverse depth."""
+    """Return the coefficients (n, 4, 3) of x, y and 1 in barycentric coordinates and inverse depth."""
     matrix = projected.copy()
     matrix[..., 2] = 1.0
     # rows of the inverse of [[x0, y0, 1], [x1, y1, 1], [x2, y2, 1]], transposed, are the coordinates

@@ -37,7 +37,7 @@ _TARGET = (0.80, 0.67, 0.35)
 
 @dataclass(frozen=True)
 class Member:
-    """A robot with the rows of its run, the targets of its references, and the frame of its tool's path."""
+    """A robot with its trace, the targets of its references, and the frame in which its path is drawn."""
 
     model: Model
     trace: Trace
@@ -47,7 +47,7 @@ class Member:
 
 @dataclass
 class Scene:
-    """Robots at a time; positions are in m, relative to the base of the first robot.
+    """Robots at one time; positions are in m, relative to the base of the first robot.
 
     Attributes
     ----------
@@ -89,13 +89,13 @@ class Scene:
 
     @property
     def place_eci(self) -> Floats:
-        """Position of the scene's origin, inertial axes, m."""
+        """Position (3,) of the scene's origin relative to the Earth's centre, in inertial axes, m."""
         place: Floats = np.asarray(self.members[0].trace.position_eci)[self._row(self.members[0])]
         return place
 
     @property
     def rot_sb(self) -> Floats:
-        """Rotation from the base axes of the first robot to axes of the scene."""
+        """Rotation (3, 3) from the base axes of the first robot to axes of the scene."""
         q = np.asarray(self.members[0].trace.q)[self._row(self.members[0])]
         rotation: Floats = self.rot_ws.T @ matrix_from_quaternion(q[QUATERNION])
         return rotation
@@ -135,12 +135,12 @@ class Scene:
         return found
 
     def seen_from(self, points_w: Floats) -> Floats:
-        """Return points (..., 3) of W in the scene, m."""
+        """Convert points (..., 3), m, from W to the axes and the origin of the scene."""
         seen: Floats = (points_w - self.origin) @ self.rot_ws
         return seen
 
     def _path(self, member: Member, points_w: Floats) -> Floats:
-        """Return a path (T, 3) of W in the scene, drawn in the path's frame at the time of the scene."""
+        """Convert a path (T, 3), m, from W to the scene; it keeps its shape in the frame of the path."""
         row, trace = self._row(member), member.trace
         if member.path_frame == "base":
             rot_wb = matrix_from_quaternion(np.asarray(trace.q)[:, QUATERNION])
@@ -160,7 +160,7 @@ class Scene:
         return self.seen_from(faces), colors
 
     def _row(self, member: Member) -> int:
-        """Return the last row that is not later than the time of the scene."""
+        """Return the index of the last row of a robot that is not later than the time of the scene."""
         times = np.asarray(member.trace.time)
         return max(int(np.searchsorted(times, self.time * (1.0 + 1e-12), side="right")) - 1, 0)
 
@@ -176,7 +176,7 @@ def _local_axes(trace: Trace) -> Floats | None:
 
 
 def _target(scene: Scene, target: Target) -> tuple[Floats, Floats]:
-    """Return the faces of the box of a target, and their colours."""
+    """Return the faces (n, 4, 3), m, of the box of a target, and their colours (n, 3)."""
     rate = float(np.linalg.norm(target.spin))
     axis = target.spin / rate if rate > 0.0 else np.array([0.0, 0.0, 1.0])
     half = rate * scene.time / 2.0

@@ -26,7 +26,7 @@ _SEA, _LAND, _ICE = (np.array(rgb) / 255.0 for rgb in ((24, 62, 118), (92, 112, 
 _AIR = np.array([125.0, 175.0, 240.0]) / 255.0
 _NIGHT = np.array([6.0, 10.0, 22.0]) / 255.0
 AIR_HEIGHT = 0.0035
-"""Height over which the brightness of the air above the horizon falls by e, in radii of the Earth."""
+"""Height over which the brightness of the air falls by a factor of e, in radii of the Earth."""
 _ROWS = 64
 
 
@@ -116,7 +116,7 @@ def _stars() -> tuple[Floats, Floats]:
 
 
 def _add_stars(image: Floats, camera: Camera, rot_is: Floats) -> None:
-    """Draw stars of two by two pixels, the brightest with a soft edge."""
+    """Draw stars as spots of Gaussian brightness; brighter stars are larger, up to five by five pixels."""
     direction, brightness = _stars()
     # stars have no parallax: the camera is moved to the origin
     pixels = camera.project(camera.position + direction @ rot_is)

@@ -1,4 +1,4 @@
-"""Axes of the base and of the scene in a corner of a picture, beside the robot."""
+"""Draws the axes of the base and of the scene in a corner of a picture."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _SHARE = 0.17
 
 
 def add_triads(image: Floats, triads: list[tuple[str, Floats]]) -> None:
-    """Draw named axes from the lower left corner of a picture (height, width, 3), 0 to 1, to the right.
+    """Draw named axes side by side from the lower left corner of a picture (height, width, 3), 0 to 1.
 
     Each entry has a name, such as ``B``, and the rotation (3, 3) from its axes to those of the camera: right,
     up and backwards.
@@ -39,7 +39,7 @@ def add_triads(image: Floats, triads: list[tuple[str, Floats]]) -> None:
 
 
 def _tile(name: str, rotation: Floats, side: int) -> Floats:
-    """Return the picture (side, side, 4), 0 to 1, of one triad."""
+    """Return the picture (side, side, 4), RGBA from 0 to 1, of one triad."""
     finer = _FINER * side
     tile = Image.new("RGBA", (finer, finer), (0, 0, 0, 0))
     draw = ImageDraw.Draw(tile)

@@ -1,4 +1,4 @@
-"""The report page of a campaign."""
+"""Fills the report page of a campaign."""
 
 from __future__ import annotations
 

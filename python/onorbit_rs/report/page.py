@@ -17,9 +17,9 @@ from onorbit_rs.report.template import Picture, Verdict, figure_html
 _VERDICTS = {True: ("passed", "holds"), False: ("failed", "BROKEN"), None: ("faint", "not evaluated")}
 _CERTIFICATE = """
 <h2>Certificate</h2>
-<p class="faint">What must stay where nothing acts, and what must agree, worked out from the trace apart from
-the integrator; relative values are shares of the run's own scales (momentum, energy, inertial forces). A
-check holds where its value is at most its gate.</p>
+<p class="faint">Conserved quantities and consistency of the results, computed from the trace independently
+of the integrator. Relative values are fractions of the run's scales (momentum, energy, inertial forces). A
+check holds if its value is at most its gate.</p>
 """
 
 

@@ -42,7 +42,7 @@ def scene_of_run(saved: SavedRun, summary: dict[str, Any], at_s: float) -> Scene
 
 
 def _member(scenario: Scenario, trace: Trace, summary: dict[str, Any]) -> Member:
-    """Return a robot of the run with its rows."""
+    """Return a robot of the run with its trace, its targets and the frame of its tool's path."""
     model = scenario.robot.build(scenario)
     if was_changed(model, summary):
         raise ModelError(f"{CHANGED}, so that it cannot be drawn; repeat the run")

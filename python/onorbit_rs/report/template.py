@@ -1,4 +1,4 @@
-"""The HTML template of the report pages, which is filled with the escaped texts and the tables of a page."""
+"""Fills the HTML template of the report pages with escaped texts, tables and figures."""
 
 from __future__ import annotations
 
@@ -52,9 +52,9 @@ def filled(
 ) -> str:
     """Return a page without references to other files.
 
-    ``numbers``, ``figures`` and ``cases`` are HTML, before, in and after the section of the figures; the
-    other texts are escaped. ``what`` is the kind of page in its title, and ``source`` the heading of the
-    YAML ``text``, which runs again with the command ``again``.
+    ``numbers``, ``figures`` and ``cases`` are HTML that is placed before, in and after the section with the
+    figures; all other texts are escaped. ``what`` is the kind of page, for the title. ``text`` is the YAML
+    file, ``source`` the heading above it, and ``again`` the command that runs it again.
     """
     shown = printable(name)
     return Template(_TEMPLATE.read_text(encoding="utf-8")).substitute(
@@ -76,7 +76,7 @@ def filled(
 
 
 def _warnings(texts: Sequence[str]) -> str:
-    """Return a list of warnings, such as remarks on omitted parts of the page, as HTML."""
+    """Return warnings, such as remarks on omitted parts of the page, as an HTML list."""
     items = "".join(f"<li>{escape(text)}</li>" for text in texts)
     heading = '<div class="verdict warned" id="warnings"><strong>Warnings</strong>'
     return f"{heading}<ul>{items}</ul></div>" if items else ""

@@ -175,7 +175,7 @@ def _reason(error: Exception) -> str:
 
 
 def _is_too_deep(error: Exception) -> bool:
-    """Return whether an error is due to nesting, or xacro raised another one with its message."""
+    """Return True if an error, or the error that xacro converted to it, is due to nesting."""
     return isinstance(error, RecursionError) or "maximum recursion depth" in str(error)
 
 

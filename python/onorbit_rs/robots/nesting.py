@@ -7,23 +7,23 @@ from contextlib import contextmanager
 from typing import Any
 
 _MOST_FRAMES = 700
-"""Largest number of nested calls; Python allows 1000 together with those of the caller."""
+"""Largest number of nested calls for a file; Python allows 1000, including those of the caller."""
 _ELEMENT, _MACRO, _INCLUDE = 2, 3, 4
-"""Nested calls for an element, and those that a macro call or an include adds to them."""
+"""Numbers of nested calls for an element, and in addition for a macro call and for an include."""
 
 HINT = "check for a macro that calls itself or a file that includes itself"
 TOO_DEEP = f"macros, includes or elements are nested too deeply; {HINT}"
 
 
 class NestingError(RecursionError):
-    """A file is nested too deeply; the message says where."""
+    """A file is nested too deeply; the message contains the macro or the file."""
 
 
 class Nesting:
     """Counts the nested calls of one expansion."""
 
     def __init__(self) -> None:
-        """Start outside of every element."""
+        """Start with no nested call."""
         self._frames = 0
         self._names: list[str] = []
 

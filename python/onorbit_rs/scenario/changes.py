@@ -84,8 +84,10 @@ def changed(data: Any, lines: Lines, changes: Changes) -> tuple[Any, Lines]:
 
 
 def misspelt(data: Any, path: str, changes: Changes) -> str:
-    """Return ``; did you mean ...?`` if a change adds the key at ``path`` and ``data``, which is the scenario
-    without the changes, has a similar key beside it; otherwise an empty string.
+    """Return a suggestion, ``; did you mean ...?``, for a key that a change adds; otherwise an empty string.
+
+    ``data`` is the scenario without the changes. A key is suggested that is similar to the last one of
+    ``path`` and in the same mapping.
     """
     if not any(change == path or change.startswith((f"{path}.", f"{path}[")) for change in changes):
         return ""
@@ -106,7 +108,7 @@ def _entry(inner: Any, step: str | int, path: str, at: Location, following: str 
         raise _not_inside(path, at, inner)
     if inner.get(step) is None:
         if isinstance(following, int):
-            raise _invalid(path, f"there is no list {step!r} to change")
+            raise _invalid(path, f"there is no list {step!r}; set the whole list")
         inner[step] = {}
     return inner[step]
 

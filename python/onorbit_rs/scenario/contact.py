@@ -95,7 +95,7 @@ class SpringDashpot(Part):
 
 
 class Impact(Part):
-    """Rigid bodies: impacts take no time, and bodies that stay in contact keep their gap."""
+    """Impact law of rigid bodies: impacts are instantaneous, and lasting contacts keep their gap."""
 
     synonyms: ClassVar = {"e": "restitution", "mu": "friction"}
 
@@ -132,7 +132,7 @@ class Friction(Part):
     stiffness: Annotated[Stiffness, Positive] | None = None
     """Tangential stiffness. Default: 0.82 times the stiffness of the normal force, at a depth of 0.1 mm."""
     damping: Annotated[Damping, NotNegative] | None = None
-    """Tangential damping inside the cone; at least a hundredth of critical damping. Default: a tenth."""
+    """Tangential damping inside the friction cone; at least 1 % of critical damping. Default: 10 %."""
 
     @model_validator(mode="after")
     def _is_consistent(self) -> Self:

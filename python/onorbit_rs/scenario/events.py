@@ -70,7 +70,7 @@ class Latch(Part):
     held_for: Annotated[Time, NotNegative] = 0.0
     """Time for which the conditions must hold without interruption."""
     touching: list[str] = Field(default_factory=list)
-    """Names of contacts between both systems that must touch, too. Default: none."""
+    """Names of contacts between both systems that must also touch. Default: none."""
 
 
 class When(Part):

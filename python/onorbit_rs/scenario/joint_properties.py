@@ -61,19 +61,19 @@ class JointProperties(Part):
     }  # fmt: skip
 
     damping: JointDamping | None = None
-    """Coefficient of viscous friction, N m s/rad."""
+    """Coefficient of viscous friction, N m s/rad or N s/m."""
     friction: JointFriction | None = None
-    """Kinetic Coulomb friction, which acts while the joint moves, N m."""
+    """Kinetic Coulomb friction, which acts while the joint moves, N m or N."""
     static_friction: JointFriction | None = None
-    """Largest torque or force that static friction can hold, N m."""
+    """Largest torque or force that static friction can hold, N m or N."""
     rotor_inertia: RotorInertia | None = None
-    """Rotor inertia reflected to the joint, kg m²."""
+    """Rotor inertia reflected to the joint, kg m² or kg."""
     stiffness: JointStiffness | None = None
-    """Stiffness of the spring at its rest position, N m/rad."""
+    """Stiffness of the spring at its rest position, N m/rad or N/m."""
     cubic_stiffness: CubicStiffness | None = None
-    """Cubic stiffness of the spring, N m/rad³; negative for a spring that softens."""
+    """Cubic stiffness of the spring, N m/rad³ or N/m³; negative for a spring that softens."""
     rest_position: RestPosition | None = None
-    """Joint position at which the spring exerts no torque or force, rad. Default: zero."""
+    """Joint position at which the spring exerts no torque or force, rad or m. Default: zero."""
 
     def apply(self, model: _core.Model, name: str) -> _core.Model:
         """Return the robot with these properties of the joint ``name``.

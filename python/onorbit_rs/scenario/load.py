@@ -47,7 +47,7 @@ def load(
     DtypeError
         If ``source`` has another type.
     InputError
-        If a path of ``changes`` cannot be read, or leads to no entry.
+        If a path of ``changes`` cannot be read, or leads through an entry that is not a mapping or a list.
     ScenarioError
         If the scenario is invalid; has the attributes ``file``, ``path`` (the location in the YAML) and
         ``line``.

@@ -188,7 +188,7 @@ class Robot(PlainRobot):
     """Robot to which ``arms`` are attached; its base is the base of the combined robot."""
     arms: Annotated[list[Arm], Field(min_length=1)] | None = None
     joints: dict[str, JointProperties] = Field(default_factory=dict)
-    """Damping, friction, rotor inertia and springs that replace those of the file, by the joint's name."""
+    """Damping, friction, rotor inertia and springs that replace those of the file, by name of the joint."""
 
     sources: ClassVar[tuple[str, ...]] = ("bundled", "urdf", "rigid_body", "bus")
 

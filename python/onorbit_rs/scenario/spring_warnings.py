@@ -44,9 +44,9 @@ def spring_warnings(scenario: Scenario, model: Model, q: NDArray[np.float64]) ->
         consequence = f"{settings.integrator} diverges above a product of {stable:.3g}"
     elif settings.integrator == "rk4":
         loss = 2.0 * math.pi * product**5 / 72.0
-        consequence = f"rk4 changes the energy of the oscillation by {loss:.1g} of its value in each period"
+        consequence = f"rk4 removes the fraction {loss:.1g} of the energy of the oscillation in each period"
     else:
-        consequence = f"the frequency of the oscillation is wrong by {product**2 / 24.0:.1g} of its value"
+        consequence = f"the frequency of the oscillation has a relative error of {product**2 / 24.0:.1g}"
     yield (
         f"robot: the spring of joint {joint!r} oscillates at {rate:.3g} rad/s with the inertia at the start; "
         f"with a time_step of {settings.time_step:g} s, the product of both is {product:.3g}, and "

@@ -57,7 +57,7 @@ def task_references(scenario: Scenario) -> Iterator[Any]:
 
 
 def path_frame(scenario: Scenario) -> PathFrame:
-    """Return the frame of the first reference of a tool if this is L or the base; otherwise W."""
+    """Return the frame of the first reference of a tool if it is L or the base, otherwise W."""
     frames: tuple[PathFrame, ...] = ("lvlh", "base")
     first = next((reference.frame for reference in task_references(scenario)), None)
     return next((frame for frame in frames if frame == first), "world")

@@ -65,7 +65,9 @@ def parse_yaml(text: str, file: Path | None) -> tuple[Any, Lines]:
     """
     reader = _NodeReader(file)
     try:
-        with suppress(RecursionError):  # not the context of the error below: programs may pickle it
+        with suppress(
+            RecursionError
+        ):  # so that it is not the context of the error below, which programs may pickle
             loader = _Loader(text)
             root = loader.get_single_node()
             data = reader.value(loader, root, ()) if root is not None else None

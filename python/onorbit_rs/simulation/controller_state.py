@@ -33,7 +33,9 @@ def encode(state: object) -> bytes:
         If the state contains a value that is not plain data; the message names its location, its type and
         the allowed types.
     """
-    with suppress(RecursionError):  # not the context of the error below: programs may pickle it
+    with suppress(
+        RecursionError
+    ):  # so that it is not the context of the error below, which programs may pickle
         data = {"format": _FORMAT, "state": _Encoder().encoded(state, "state")}
         return json.dumps(data, allow_nan=False).encode("ascii")
     raise _refused("state", "is nested too deeply", state)

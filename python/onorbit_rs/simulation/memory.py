@@ -18,17 +18,17 @@ if TYPE_CHECKING:
     from onorbit_rs.scenario.build import Built
 
 BASE, PER_ROWS, PER_RECORDED = 0.25e9, 2.2, 1.5
-"""Memory of a run with a folder: that of the loaded modules, bytes, and ratios to the size of all rows and to
-that of the rows in the recording; measured with runs of 8e4 to 4e6 rows."""
+"""Memory of a run that writes a folder: bytes for the loaded modules, and factors of the size of all rows and
+of the size of the rows in the recording. Measured with runs of 8e4 to 4e6 rows."""
 
 BASE_ALONE, PER_ROWS_ALONE = 0.12e9, 1.1
-"""The same for a run without a folder."""
+"""The same values for a run that writes no folder, which has no recording."""
 
 LARGE = 1e9
 """Size of the rows of a run, bytes, above which a warning states the size."""
 
 FITTING = 60e6
-"""Size of the rows for which a message suggests ``record_every``, bytes: the run then needs below 500 MB."""
+"""Size of the rows, bytes, with which a run needs less than 500 MB; messages suggest it."""
 
 _ALWAYS = (
     "time", "q", "v", "tau", "acceleration", "momentum", "impulse", "kinetic_energy", "work", "dissipated",
@@ -77,7 +77,7 @@ def check_size(built: Built | BuiltWorld, folder: Path | None) -> None:
     needed = estimated_memory(built, has_folder=folder is not None)
     every = _rounded_up(built.scenario.simulation.record_every * size / FITTING)
     what = f"the run records {rows_of(built)} rows, about {_text(size)}"
-    fix = f"set simulation.record_every to {every}, which needs below 500 MB of memory"
+    fix = f"set simulation.record_every to {every}, which needs less than 500 MB of memory"
     free = _available_memory()
     if free is not None and needed > free:
         raise _too_large(f"{what}, and needs about {_text(needed)} of memory, but {_text(free)} are "

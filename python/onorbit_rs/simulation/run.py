@@ -73,7 +73,7 @@ class Run:
     """Loaded robots; None after unpickling."""
 
     def __repr__(self) -> str:
-        """Return scenario, number of rows, status, verdict of the certificate and folder."""
+        """Return a line with scenario, number of rows, status, verdict of the certificate and folder."""
         passed = self.summary.get("certificate_passed")
         verdict = "" if passed is None else f", certificate {'passed' if passed else 'failed'}"
         where = "" if self.out is None else f", in {self.out}"
@@ -81,7 +81,7 @@ class Run:
         return f"<Run {name!r}: {len(self.trace)} rows, {status}{verdict}{where}>"
 
     def _repr_html_(self) -> str | None:
-        """Return a small report for notebooks."""
+        """Return a short report as HTML for notebooks."""
         from onorbit_rs.displays import or_plain, run_html
 
         return or_plain(run_html, self)

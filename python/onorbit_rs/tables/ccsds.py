@@ -90,7 +90,7 @@ def _lines(start: tuple[datetime, str], times: Any, rows: Any) -> list[str]:
 
 
 def _stamp(epoch: datetime, t: float) -> str:
-    """Return the date of simulation time ``t``, s, to the nanosecond."""
+    """Return date and time at simulation time ``t``, s, to the nanosecond, in the time scale of the epoch."""
     whole = int(np.floor(t))
     nanoseconds = round((t - whole) * 1e9) + epoch.microsecond * 1000
     second = epoch.replace(microsecond=0) + timedelta(seconds=whole + nanoseconds // 10**9)
@@ -98,7 +98,7 @@ def _stamp(epoch: datetime, t: float) -> str:
 
 
 def _last_of_each_time(time: Any) -> Any:
-    """Return the indices of the rows after which the time changes: an event has two rows at one time."""
+    """Return the indices of the last row of each time; at an event there are two rows of the same time."""
     return np.flatnonzero(np.append(np.diff(time) > 0.0, True))
 
 
@@ -126,7 +126,7 @@ def _start(run: RecordedRun, kind: str) -> tuple[datetime, str]:
 
 
 def _has_leap_second(start: datetime, seconds: float) -> bool:
-    """Return True if the run passes the end of June or December, when leap seconds occurred until 2016."""
+    """Return True if the run contains the end of a June or December up to 2016, the dates of leap seconds."""
     end = start + timedelta(seconds=seconds)
     return any(start < midnight <= end for midnight in _midnights(start.year, end.year))
 

@@ -55,6 +55,10 @@ def labels(path: str, shape: Sequence[int], names: Names) -> list[Label]:
         Shape of one row.
     names : Names
         Joints and bodies of the robot.
+
+    Returns
+    -------
+    list of Label
     """
     kind, _ = split_path(path)
     if not shape:
@@ -70,7 +74,7 @@ def labels(path: str, shape: Sequence[int], names: Names) -> list[Label]:
 
 
 def _parts(kind: str, width: int, names: Names) -> Iterator[tuple[str, str]]:
-    """Yield name and unit of each number of a row of one axis."""
+    """Yield the name and the unit of each number of a one-dimensional row."""
     parts: Mapping[str, tuple[slice, str]] = COLUMNS[kind].parts if kind in COLUMNS else {}
     if kind == "tracking" and width == 6:
         parts = {"position": (slice(0, 3), "m"), "attitude": (slice(3, 6), "rad")}
@@ -89,7 +93,7 @@ def _parts(kind: str, width: int, names: Names) -> Iterator[tuple[str, str]]:
 
 
 def _of_joints(prefix: str, count: int, unit: str, names: Names) -> Iterator[tuple[str, str]]:
-    """Yield name and unit of each joint; ``unit`` is that of revolute, then that of prismatic joints."""
+    """Yield the name and the unit of each joint; ``unit`` is, for example, ``N m or N``."""
     revolute, _, prismatic = unit.partition(" or ")
     joints = names.joints if len(names.joints) == count else [str(k) for k in range(count)]
     kinds = names.joint_units if len(names.joint_units) == count else [""] * count
@@ -119,6 +123,6 @@ def _simple_unit(kind: str) -> str:
 
 
 def flat(values: Any) -> Floats:
-    """Return a column as (T, numbers per row)."""
+    """Return a column as a matrix (T, n) with the n numbers of each row."""
     array: Floats = np.asarray(values)
     return array.reshape(len(array), -1)

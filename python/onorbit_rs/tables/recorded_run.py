@@ -43,7 +43,7 @@ class RecordedRun:
         self.systems = systems_in(self._arrays) if "systems" in self.summary else []
 
     def __repr__(self) -> str:
-        """Return folder, systems and status."""
+        """Return a short text with the folder, the number of rows, the systems and the status."""
         whose = f" of {', '.join(self.systems)}" if self.systems else ""
         rows = len(self._arrays["time"])
         return f"<RecordedRun: {self.folder}, {rows} rows{whose}, {self.summary.get('status')}>"
@@ -51,15 +51,25 @@ class RecordedRun:
     def columns(self, system: str | None = None) -> dict[str, Any]:
         """Return the columns of the robot or of one system, by path.
 
+        Parameters
+        ----------
+        system : str, optional
+            Name of the system; required if the run has several systems.
+
         Raises
         ------
         InputError
-            If the system is missing or unknown.
+            If the run has several systems and ``system`` is None or unknown.
         """
         return dict(system_in(self._arrays, self._checked(system)).arrays if self.systems else self._arrays)
 
     def table(self, system: str | None = None) -> tuple[list[Label], Any]:
-        """Return the labels of the numbers in a row, and the rows, (T, numbers); the first is the time.
+        """Return the labels of the numbers in a row, and the rows, (T, n); the first number is the time, s.
+
+        Parameters
+        ----------
+        system : str, optional
+            Name of the system; required if the run has several systems.
 
         Raises
         ------
@@ -77,7 +87,12 @@ class RecordedRun:
         """Return the rows as a ``pandas.DataFrame`` with the time as its index.
 
         The columns have names such as ``q/position/x`` and ``tau/elbow``; ``frame.attrs["units"]`` has their
-        units.
+        units, and ``frame.attrs["summary"]`` is the summary of the run.
+
+        Parameters
+        ----------
+        system : str, optional
+            Name of the system; required if the run has several systems.
 
         Raises
         ------
@@ -98,6 +113,11 @@ class RecordedRun:
         """Return the rows as an ``xarray.Dataset`` with the time as a coordinate.
 
         Each variable is one number per row, as in :meth:`to_pandas`, with its unit in ``attrs["units"]``.
+
+        Parameters
+        ----------
+        system : str, optional
+            Name of the system; required if the run has several systems.
 
         Raises
         ------
@@ -159,7 +179,7 @@ class RecordedRun:
             known = ", ".join(self.systems)
             what = "no system is given" if system is None else f"there is no system {system!r}"
             raise InputError(
-                f"{what}; the systems of the run are: {known}",
+                f"{what}; give one of the systems of the run: {known}",
                 name="system",
                 got=system,
                 expected=self.systems,

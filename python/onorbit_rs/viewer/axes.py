@@ -76,7 +76,7 @@ def log_all_axes(
     in_orbit: bool,
     has_reference: bool,
 ) -> None:
-    """Log the axes of the tool and its desired pose, and those of the base, I and L beside the robot.
+    """Log the axes of the tool and of its desired pose, and beside the robot those of the base, I and L.
 
     Parameters
     ----------

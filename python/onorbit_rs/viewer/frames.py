@@ -94,9 +94,10 @@ def send_local_frame(recording: rr.RecordingStream, rows: TraceRows) -> None:
 def send_moving_frames(
     recording: rr.RecordingStream, rows: TraceRows, setting: Setting, compass: Floats, beside: Floats
 ) -> None:
-    """Send the motion of base and joints.
+    """Send the motion of the base and the joints.
 
-    Inertial axes are shown at ``compass`` and the axes of the base at ``beside``, (3,), m, in ``follow``.
+    The inertial axes are shown at ``compass`` and the axes of the base at ``beside``, both (3,), m, in the
+    frame ``follow``.
     """
     q, time, base = rows["q"], rows.times, setting.frame_of(setting.base)
     quat_fb = q[:, QUATERNION] if rows.quat_lb is None else rows.quat_lb

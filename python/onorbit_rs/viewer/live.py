@@ -196,7 +196,11 @@ def open_live(setting: Setting, duration_s: float) -> LiveView | None:
 def connected_recording(name: str) -> rr.RecordingStream | None:
     """Open a viewer window and return a recording that is sent to it; if that fails, warn and return None."""
     if not has_screen():
-        warnings.warn("no display is available; the run continues without the viewer", stacklevel=2)
+        warnings.warn(
+            "no display is available; the run continues without the viewer; give an output folder, and open "
+            "its recording on a computer with a display with: onorbit show DIR",
+            stacklevel=2,
+        )
         return None
     try:
         url = open_viewer()

@@ -43,7 +43,7 @@ def release_streams() -> None:
 
 
 def releases_streams(write: Callable[P, R]) -> Callable[P, R]:
-    """Release the streams of a function when it has returned; until then its own variables keep them."""
+    """Decorate a function so that its streams are released after it returns and its variables are gone."""
 
     @wraps(write)
     def release_after(*args: P.args, **kwargs: P.kwargs) -> R:

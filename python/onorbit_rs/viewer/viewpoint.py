@@ -96,7 +96,7 @@ class Viewpoint:
 
     @property
     def base_at(self) -> Floats:
-        """Position of the axes of the base in ``follow``, m; axes at the base would cross the robot."""
+        """Position (3,) of the axes of the base in ``follow``, m, beside the robot."""
         return self.place(-0.8, -0.02)
 
     @property

@@ -26,7 +26,7 @@ _SEA, _LAND, _ICE = (np.array(rgb) for rgb in ((38, 86, 140), (86, 128, 82), (22
 
 @cache
 def land() -> NDArray[np.bool_]:
-    """Return cells (360, 720), True on land; rows go from north to south, columns from -180° to the east."""
+    """Return cells (360, 720), True on land, from north to south and from -180° of longitude eastwards."""
     bits = np.frombuffer(zlib.decompress(_FILE.read_bytes()), np.uint8)
     return np.unpackbits(bits).reshape(_CELLS).astype(bool)
 
@@ -52,7 +52,7 @@ def smooth_land() -> Floats:
 
 
 def land_fraction(latitude_deg: Floats, longitude_deg: Floats) -> Floats:
-    """Return the fraction of land near points, interpolated between the cells; 0.5 is the coast."""
+    """Return the fraction of land around points, 0 to 1, interpolated between cells; 0.5 is the coast."""
     rows, columns = _CELLS
     y = ((90.0 - latitude_deg) * rows / 180.0 - 0.5).clip(0.0, rows - 1.0)
     x = (longitude_deg + 180.0) * columns / 360.0 - 0.5
@@ -67,7 +67,10 @@ def land_fraction(latitude_deg: Floats, longitude_deg: Floats) -> Floats:
 
 
 def world_map(has_land: bool, grid_deg: float = 30.0) -> NDArray[np.uint8]:
-    """Return a (360, 720, 3) texture of the Earth with a grid, with or without land."""
+    """Return an RGB texture (360, 720, 3) of the Earth with grid lines every ``grid_deg`` degrees.
+
+    Without ``has_land``, the whole surface is sea.
+    """
     latitude, longitude = centers()
     is_land = land() if has_land else np.zeros(_CELLS, dtype=bool)
     ice = ((np.abs(latitude[:, None]) > 72.0) | (latitude[:, None] < -60.0))[..., None]

@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 _MOTION = 1e-5
-"""Motion by which the joints are closed to see which links approach each other, rad or m."""
+"""Motion of the joints for the test of which links approach each other, rad or m."""
 _CLOSER = 1e-3
-"""Least decrease of a distance, relative to the motion, that counts as an approach."""
+"""Smallest decrease of a distance, relative to the motion, that counts as an approach."""
 
 
 def check_grip(
@@ -127,7 +127,7 @@ def _moves(model: _core.Model, q: Floats, joints: Sequence[int], link: str) -> b
 
 
 def _opened(model: _core.Model, q: Floats, rates: Floats) -> Floats | None:
-    """Return the configuration of the open gripper; None if a joint has no limit in this direction."""
+    """Return the configuration of the open gripper; None if a joint has no limit in the opening direction."""
     opened = q.copy()
     for index in np.flatnonzero(rates):
         joint = model.joints[index]
@@ -143,7 +143,7 @@ def _gap(model: _core.Model, q: Floats, links: tuple[str, str]) -> float:
 
 
 def _sides(contact: Contact, models: Mapping[str, _core.Model]) -> list[set[tuple[str, str]]]:
-    """Return the links with shapes of both sides of a contact, as (system, link)."""
+    """Return the links that have collision shapes, for each side of a contact, as (system, link)."""
     return [
         {
             (system, shape.link)

@@ -20,7 +20,7 @@ class GripForceController(Law):
 
     The fingers are moved by the joints of the group, or by joints that mimic them. The force of the grip is
     the mean normal force of the fingers, from the contacts of the scenario, which must include each finger.
-    There is no ``reference``.
+    The control has no ``reference``.
     """
 
     kind: Literal["grip_force"] = "grip_force"

@@ -26,11 +26,11 @@ class PythonEffect(UserClass):
 
     @property
     def paths(self) -> list[tuple[tuple[str, ...], str]]:
-        """Locations and values of the entries that name links; none."""
+        """Locations and values of the entries that name links; empty for this effect."""
         return []
 
     def of_system(self, _name: str, _systems: Collection[str]) -> None:
-        """Return None: in a scenario of one system of a world, the effect is omitted."""
+        """Return None, so that the scenario of a single system of a world does not contain the effect."""
 
     def build(self, _model: _core.Model | None, folder: Path) -> _core.Effect:
         """Return a new object of the user's class, after executing its file or module."""

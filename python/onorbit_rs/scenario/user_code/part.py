@@ -16,13 +16,13 @@ class UserClass(Part):
     """User-defined class; its file or module is executed."""
 
     role: ClassVar[str]
-    """What the class is, in messages: ``controller`` or ``effect``."""
+    """Word for an object of the class in messages: ``controller`` or ``effect``."""
     method: ClassVar[str]
     """Method that the class must define, with its arguments."""
     result: ClassVar[str]
-    """What this method must return, in messages."""
+    """Description of the value that this method must return, for messages."""
     error: ClassVar[type[OnOrbitError]]
-    """Error raised if the file, the module or the class is not as expected."""
+    """Class of the error that is raised if the file, the module or the class is invalid."""
 
     file: FilePath | None = None
     """Python file, relative to the scenario."""

@@ -177,9 +177,7 @@ def _check_class(
 def _with_bases(
     definition: ast.ClassDef, classes: dict[str, ast.ClassDef]
 ) -> tuple[list[ast.ClassDef], bool]:
-    """Return a class with its bases in the same file, and whether all other bases are known to lack
-    the method.
-    """
+    """Return a class with its bases in the same file, and True if no other base can define the method."""
     line, are_all_known, waiting = [], not definition.keywords, [definition]
     while waiting:
         one = waiting.pop(0)
