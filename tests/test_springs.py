@@ -347,7 +347,7 @@ def test_pickles_and_fingerprints_contain_the_spring() -> None:
         ),
         (
             {"stiffness": 0.0, "rest_position": 0.2},
-            r"has a rest position of its spring but no stiffness; give a",
+            r"the spring has a rest position but no stiffness; give a",
         ),
     ],
 )

@@ -3,34 +3,35 @@
 use super::impact::ImpactLaw;
 use super::point_impulse::point_impulse;
 
-/// Change of a velocity, relative to the largest velocity, below which the solution counts as exact.
+/// Change of a velocity in one sweep, relative to the largest velocity, at or below which the iteration stops
+/// because the change is a rounding error.
 const EXACT: f64 = 4.0 * f64::EPSILON;
 /// Largest number of sweeps over all points.
 pub(crate) const MOST_SWEEPS: usize = 4000;
-/// Change of a velocity in the last sweep, relative to the largest velocity, up to which impulses that have not
-/// become exact are accepted.
+/// Largest change of a velocity in the last sweep, relative to the largest velocity, for which the impulses are
+/// accepted although the iteration has not reached [`EXACT`].
 const ACCEPTED: f64 = 1e-9;
 
-/// Impulses that have not converged.
+/// Error: the iteration for the impulses has not converged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Unsolved {
     /// Largest change of a velocity in the last sweep, m/s.
     pub(crate) change: f64,
 }
 
-/// Rows of an impulse problem that belong together.
+/// Rows of one point or of one joint stop in an impulse problem.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Block {
     /// Point of contact: one row along the normal and two across it.
     Point {
         /// Coefficient of friction.
         friction: f64,
-        /// Least normal velocity afterwards, m/s.
+        /// Smallest permitted normal velocity after the impulse, m/s.
         target: f64,
     },
-    /// Stop of a joint: one row.
+    /// Joint stop: one row.
     Stop {
-        /// Least velocity afterwards, away from the stop, m/s or rad/s.
+        /// Smallest permitted velocity away from the stop after the impulse, rad/s (m/s).
         target: f64,
     },
 }
@@ -51,8 +52,8 @@ impl Block {
     }
 }
 
-/// Problem for the impulses `p` after which the relative velocities `u = b + W p` satisfy, at every point,
-/// `0 ≤ p_n ⟂ u_n − target ≥ 0` and Coulomb's law of friction.
+/// Problem of finding the impulses `p` after which the relative velocities `u = b + W p` satisfy
+/// `0 ≤ p_n ⟂ u_n − target ≥ 0` at every point and joint stop, and Coulomb's law of friction at every point.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ImpulseProblem {
     /// Matrix `W`, `(n, n)`, row major, symmetric and positive semidefinite.
@@ -85,13 +86,14 @@ impl ImpulseProblem {
         0.5 * p.iter().zip(self.free.iter().zip(&u)).map(|(p, (b, u))| p * (b + u)).sum::<f64>()
     }
 
-    /// Improves the impulses `p`, `(n,)`, by block Gauss-Seidel iteration: each point in turn receives the
-    /// impulse that satisfies its own conditions for the present impulses of the others, until a sweep changes
-    /// no velocity by more than its rounding error.
+    /// Solves the problem by block Gauss-Seidel iteration, starting from the impulses in `p`, `(n,)`, which are
+    /// overwritten by the solution. In each sweep, the impulse of every block in turn is replaced by the one
+    /// that satisfies the conditions of this block for the current impulses of the other blocks. The iteration
+    /// ends when a sweep changes no velocity by more than its rounding error.
     ///
     /// # Errors
-    /// [`Unsolved`] if the last of [`MOST_SWEEPS`] sweeps changed a velocity by more than 1e-9 of the largest
-    /// velocity, or of the rest speed if that is larger.
+    /// [`Unsolved`] if the last of [`MOST_SWEEPS`] sweeps changed a velocity by more than 1e-9 times the
+    /// largest velocity or [`ImpactLaw::REST_SPEED`], whichever is larger.
     ///
     /// Source: Jean, The non-smooth contact dynamics method, Computer Methods in Applied Mechanics and
     /// Engineering 177, 1999.
@@ -114,8 +116,9 @@ impl ImpulseProblem {
         if change <= ACCEPTED * speed.max(ImpactLaw::REST_SPEED) { Ok(()) } else { Err(Unsolved { change }) }
     }
 
-    /// Replaces the impulse of one block, whose first row is `start`. Returns the largest change of a
-    /// velocity of the block.
+    /// Replaces the impulse of one block, whose first row is `start`, by the one that satisfies the conditions
+    /// of the block for the other impulses in `p`. Returns the largest resulting change of a velocity of the
+    /// block, m/s or rad/s.
     fn improve(&self, block: &Block, start: usize, p: &mut [f64]) -> f64 {
         let n = self.rows();
         let w = |i: usize, j: usize| self.matrix[(start + i) * n + start + j];
@@ -139,8 +142,7 @@ impl ImpulseProblem {
         }
     }
 
-    /// Returns the impulses with which the least velocities are `scale` times the targets, starting from
-    /// none.
+    /// Solves the problem with all targets multiplied by `scale`, starting from zero impulses.
     fn scaled(&self, scale: f64) -> Result<Vec<f64>, Unsolved> {
         let blocks = self.blocks.iter().map(|block| match *block {
             Block::Point { friction, target } => Block::Point { friction, target: scale * target },
@@ -151,12 +153,12 @@ impl ImpulseProblem {
         problem.solve(&mut p).map(|()| p)
     }
 
-    /// Returns the impulses of an impact, which do not create energy, and the factor that limits its
-    /// restitution.
+    /// Returns the impulses of an impact that does not create energy, and the factor, from 0 to 1, by which the
+    /// restitution is reduced for this purpose.
     ///
-    /// With friction, the restitution of several points, or of a point whose normal and tangential motions
-    /// are coupled, can create energy. All targets are then multiplied by the largest factor below 1 for
-    /// which it does not. With the factor 0 the impulses always dissipate:
+    /// Together with friction, restitution can create energy if there are several points, or if the normal and
+    /// tangential motions of a point are coupled. All targets are then multiplied by the largest factor below 1
+    /// for which no energy is created. With the factor 0 the impulses always dissipate:
     /// `ΔT = pᵀ u⁺ − ½ pᵀ W p ≤ 0`, because `p_n u_n⁺ = 0` and `p_t · u_t⁺ ≤ 0` at every point.
     ///
     /// # Errors

@@ -72,9 +72,10 @@ pub struct Contact {
     /// Pieces of the first and of the second side. The force of the contact acts on the second side, and the
     /// opposite force on the first.
     pub sides: [Vec<ContactSide>; 2],
-    /// Law of the compliant forces; `None` without such forces.
+    /// Law of the compliant forces; `None` if the contact exerts none.
     pub law: Option<ContactLaw>,
-    /// Law of rigid impacts, which excludes `law`. Without both, only the distance is recorded.
+    /// Law of rigid impacts, which cannot be combined with `law`. If both are `None`, only the distance is
+    /// recorded.
     pub impact: Option<ImpactLaw>,
     /// True if the sides may overlap at the start.
     pub may_start_overlapping: bool,
@@ -95,7 +96,7 @@ impl Contact {
             impact.check()?;
             let refuse = |what| Err(ContactError::ImpactLaw { contact: self.name.clone(), what });
             if self.law.is_some() {
-                return refuse("compliant forces; give one of both laws");
+                return refuse("compliant forces; give only one of the two laws");
             }
             if self.may_start_overlapping {
                 return refuse("start_overlapping, because rigid bodies cannot overlap; omit it");

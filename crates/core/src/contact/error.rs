@@ -69,15 +69,16 @@ pub enum ContactError {
         /// Depth of the overlap, m.
         depth: f64,
     },
-    /// A contact with an impact law has a setting that excludes it.
+    /// A contact has an impact law and a setting that cannot be combined with it.
     #[error("contact '{contact}': an impact law excludes {what}")]
     ImpactLaw {
         /// Name of the contact.
         contact: String,
-        /// Setting that is excluded, and what to do instead.
+        /// Setting that is excluded, and the suggested fix.
         what: &'static str,
     },
-    /// Painlevé's case: no force of a sliding rigid contact with Coulomb friction satisfies its conditions.
+    /// Painlevé's paradox: no force of a sliding rigid contact satisfies both the contact conditions and
+    /// Coulomb's law of friction.
     #[error(
         "contact '{contact}': no force of a rigid contact with Coulomb friction keeps the sliding links {links} from \
          overlapping: the friction coefficient {friction} is above {limit}, the value at which friction pushes the \
@@ -92,14 +93,14 @@ pub enum ContactError {
         links: String,
         /// Coefficient of friction of the contact.
         friction: f64,
-        /// Coefficient of friction up to which the contact has a force.
+        /// Largest coefficient of friction for which a contact force exists.
         limit: f64,
     },
-    /// The impulses or forces of rigid contacts do not converge.
+    /// The iteration for the impulses or forces of rigid contacts did not converge.
     #[error(
         "contact {contacts}: the impulses at {points} rigid points did not converge; the last of {sweeps} sweeps \
-         changed a velocity by {change} m/s; use a compliant normal force, such as HuntCrossley, for contacts of \
-         long rows or stacks of bodies",
+         changed a velocity by {change} m/s; use a compliant normal force, such as HuntCrossley, for the \
+         contacts within long rows or stacks of bodies",
         change = short(*change)
     )]
     Unsolved {

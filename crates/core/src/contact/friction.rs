@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 /// Default damping ratio of the bristles.
 const DAMPING_RATIO: f64 = 0.1;
 /// Smallest damping ratio of the bristles. Slipping bristles approach the friction cone at the rate `σ/c`, with
-/// the stiffness `σ` and the damping `c`, which the steps must resolve. Bristles that would be on the cone at
-/// once would exchange energy with the normal force, which changes their length, and their force would change
-/// its direction at once.
+/// the stiffness `σ` and the damping `c`, and the steps of the integrator must resolve this motion. Without
+/// damping, the bristles would reach the cone immediately: changes of the normal force would then change their
+/// length, and thus their energy, and the direction of their force could change discontinuously.
 const LEAST_RATIO: f64 = 0.01;
 
 /// Coulomb friction with elastic bristles.
@@ -99,8 +99,9 @@ impl Friction {
     }
 
     /// Returns the damping of the bristles, N s/m, of a contact with the reciprocal effective mass `mobility`,
-    /// 1/kg: the given one, but at least that with a damping ratio of 0.01. For `mobility` 0, which stands for
-    /// an unknown mass, it is the given one or 0.
+    /// 1/kg. This is [`Friction::damping`], or that of a damping ratio of 0.1 if none is given, but at least
+    /// that of a damping ratio of 0.01. If `mobility` is 0 because the mass is unknown, it is the given
+    /// damping, or 0 if none is given.
     pub fn damping_for(&self, mobility: f64) -> f64 {
         // c = 2 ζ √(σ m)
         let critical = if mobility > 0.0 { 2.0 * (self.stiffness / mobility).sqrt() } else { 0.0 };

@@ -1,4 +1,5 @@
-//! Law of rigid impacts: Newton's restitution along the normal and Coulomb's cone across it.
+//! Law of rigid impacts: Newton's law of restitution along the normal and Coulomb friction in the tangential
+//! plane.
 
 use super::error::ContactError;
 
@@ -9,8 +10,8 @@ use super::error::ContactError;
 ///
 /// `0 ≤ p_n ⟂ u_n⁺ + e u_n⁻ ≥ 0`, `|p_t| ≤ μ p_n`, and `p_t = −μ p_n u_t⁺/|u_t⁺|` where `u_t⁺ ≠ 0`,
 ///
-/// at all points of a group of systems at once. A contact that lasts exerts the force that keeps the gap, with
-/// the same cone.
+/// simultaneously at all points between systems that touch. While the bodies stay in contact, they exert the
+/// force that prevents an overlap, limited by the same friction cone.
 ///
 /// Source: Moreau, Unilateral contact and dry friction in finite freedom dynamics, in: Nonsmooth Mechanics
 /// and Applications, CISM 302, 1988.
@@ -23,8 +24,8 @@ pub struct ImpactLaw {
 }
 
 impl ImpactLaw {
-    /// Speed of separation, m/s, below which an impact has no restitution, so that the contact lasts and an
-    /// infinite sequence of bounces ends.
+    /// Speed of separation, m/s, below which an impact has no restitution, so that the bodies stay in contact
+    /// instead of bouncing infinitely often.
     pub const REST_SPEED: f64 = 1e-5;
 
     /// Checks the parameters.

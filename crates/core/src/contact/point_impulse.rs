@@ -1,6 +1,6 @@
 //! Impulse at a single point with a unilateral constraint and Coulomb friction.
 
-/// Directions, over the full circle, from which a sliding direction is searched.
+/// Number of sectors of the full circle in which the direction of sliding is searched for.
 const DIRECTIONS: usize = 64;
 
 /// Returns the impulse `p` (normal, then two tangential components) at one point, after which the velocity
@@ -24,7 +24,7 @@ pub(super) fn point_impulse(w: &[[f64; 3]; 3], b: [f64; 3], friction: f64, targe
     }
     let sliding = Sliding { w, b, friction, lacking };
     sliding.solve().unwrap_or_else(|| {
-        // no sliding direction and no impulse inside the cone: without friction, which dissipates as well
+        // neither sticking nor sliding satisfies the conditions: omit friction, which does not create energy
         [lacking / w[0][0], 0.0, 0.0]
     })
 }
@@ -87,7 +87,8 @@ impl Sliding<'_> {
         Some(Trial { impulse, across: d[0] * u[1] - d[1] * u[0], along: d[0] * u[0] + d[1] * u[1] })
     }
 
-    /// Returns the impulse for a direction of sliding that is that of the velocity after the impulse.
+    /// Returns the impulse whose direction of sliding is that of the tangential velocity after it; `None` if
+    /// there is no such direction.
     fn solve(&self) -> Option<[f64; 3]> {
         let speed = self.b[1].hypot(self.b[2]);
         let first = if speed > 0.0 { self.b[2].atan2(self.b[1]) } else { 0.0 };
@@ -98,7 +99,7 @@ impl Sliding<'_> {
             return Some(trial.impulse);
         }
         let step = std::f64::consts::TAU / DIRECTIONS as f64;
-        // from the present direction to both sides
+        // search from the direction of the velocity before the impulse to both sides
         let offsets = (0..=DIRECTIONS as i32 / 2).flat_map(|k| [k, -k - 1]);
         offsets.into_iter().find_map(|k| {
             let start = first + f64::from(k) * step;
@@ -106,8 +107,8 @@ impl Sliding<'_> {
         })
     }
 
-    /// Returns the impulse for a direction between two angles, rad, if the sliding velocity crosses the
-    /// assumed direction there.
+    /// Returns the impulse for the direction of sliding between two angles, rad; `None` if [`Trial::across`]
+    /// has no change of sign between them, or if the velocity there is opposite to the assumed direction.
     fn between(&self, mut low: f64, mut high: f64) -> Option<[f64; 3]> {
         let (mut before, mut after) = (self.trial(low)?.across, self.trial(high)?.across);
         if before * after > 0.0 {

@@ -17,8 +17,8 @@ use crate::model::Model;
 /// - gains, goals or references that are invalid or do not fit the group;
 /// - a goal, or a shift of the reference to the present state, of a control without a reference or with an
 ///   external law;
-/// - a shift of the reference, or a tolerance of the path, of a law that grips;
-/// - a force that a gripper cannot exert;
+/// - a shift of the reference, or a path tolerance, of a grip-force law;
+/// - a grip force that exceeds the effort limits of the joints;
 /// - a load, or internal forces, of a law that does not use them;
 /// - an empty time window;
 /// - a start after a control that does not exist, that never ends or that waits for this control itself;

@@ -21,9 +21,9 @@ use crate::spatial::{Mat3, Motion, Real, Vec3, dot, log_rotation};
 /// with the reduced model `M*`, `c*`, `Jg`, the exact drift `d` and the joint torques `Q*` of the external
 /// wrenches ([`FreeFloating`]), the joint rates `q̇`, the actual pose `p` of the frame and the desired pose
 /// `pd`. Poses and their derivatives are in W axes, or in base axes if the reference is relative to the base;
-/// the attitude error is the logarithm on SO(3). `f = −τ_s` with the torques `τ_s` of the springs at the
-/// joints ([`JointSpring`](crate::model::JointSpring)). If friction is compensated, `f = b q̇ − τ_s` with the
-/// damping coefficients `b` of the joints.
+/// the attitude error is the logarithm on SO(3). The term `f = −τ_s` compensates the torques `τ_s` of the
+/// springs at the joints ([`JointSpring`](crate::model::JointSpring)). If friction is compensated as well,
+/// `f = b q̇ − τ_s` with the damping coefficients `b` of the joints.
 ///
 /// `Jg⁺` is the damped and `J₀⁺` the undamped pseudo-inverse of `Jg`; `N = 1 − J₀⁺ Jg` projects onto the null
 /// space. Near a singularity `Jg⁺` reproduces some directions only partly. The suppressed part of the joint

@@ -80,10 +80,10 @@ impl Control {
         Self { has_column: false, ..Self::new("control", joints, law) }
     }
 
-    /// Returns the number of components of the tracking error: 6 for a frame (m, then rad), one per joint for
-    /// a reference of positions or rates, and 0 without a reference or if the reference commands efforts. A
-    /// law that follows external commands has one component per joint, which is zero while no positions are
-    /// commanded. A law that grips has one component, the force error, N.
+    /// Returns the number of components of the tracking error: 6 for a frame (m, then rad), one per joint for a
+    /// reference of positions or rates, and 0 without a reference or if the reference commands efforts. A law
+    /// that follows external commands has one component per joint, which is zero while no positions are
+    /// commanded. A grip-force law has one component, the error of the grip force, N.
     pub fn width(&self) -> usize {
         match (self.law.task(), self.law.joint_reference()) {
             (Some(_), _) => 6,

@@ -167,14 +167,15 @@ pub(super) struct EffortInput<'a> {
     pub(super) jacobian: &'a [f64],
     /// Rates of the `k` joints of the group, `(k,)`, rad/s (m/s).
     pub(super) rates: &'a [f64],
-    /// Fingers that the group moves, each with the contact forces on it; empty unless the law grips.
+    /// Fingers that the group moves, and the contact forces on each of them; empty unless the law is a
+    /// [`GripForce`](super::GripForce).
     pub(super) fingers: (&'a [Finger], &'a [FingerForce]),
 }
 
 /// State and workspace of the laws that command efforts.
 pub(super) struct EffortWork<'a> {
     pub(super) pid: &'a mut PidMemory,
-    /// State of a law that grips; `None` for other laws.
+    /// State of a grip-force law; `None` for other laws.
     pub(super) grip: Option<&'a mut GripMemory>,
     pub(super) inverse: &'a mut PseudoInverse<f64>,
     /// Workspace with one number per joint, `(n,)`.

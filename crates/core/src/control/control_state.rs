@@ -46,7 +46,7 @@ pub struct ControlMemory {
     /// State of a law that follows external commands; `None` for other laws.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) external: Option<ExternalMemory>,
-    /// State of a law that grips; `None` for other laws.
+    /// State of a grip-force law; `None` for other laws.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) grip: Option<GripMemory>,
 }
@@ -68,7 +68,7 @@ pub(super) struct ControlState {
     pub(super) tool_in_load: Option<(Mat3<f64>, Vec3<f64>)>,
     /// Tracking error, desired less actual, of length [`Control::width`].
     pub(super) error: Vec<f64>,
-    /// Fingers of a law that grips; empty for other laws.
+    /// Fingers of a grip-force law; empty for other laws.
     pub(super) fingers: Vec<Finger>,
     /// Contact forces on the fingers at the last evaluation.
     pub(super) finger_forces: Vec<FingerForce>,
@@ -278,8 +278,9 @@ impl ControlState {
         goal.judge(t, clock, control.duration(), &distances)
     }
 
-    /// Returns the outcome of the goal of a law that grips. The goal is not reached before the desired force
-    /// has its final value, because the force of an impact of the fingers may reach it for an instant.
+    /// Returns the outcome of the goal of a grip-force law. The goal cannot succeed before the desired force
+    /// has its final value, because the impact of the fingers on the object may produce this force for an
+    /// instant.
     fn judge_grip(&self, law: &GripForce, goal: &Goal, t: f64, clock: f64) -> Outcome {
         let is_rising = self.memory.grip.as_ref().is_some_and(|grip| grip.reference < law.force);
         match goal.judge(t, clock, 0.0, &self.error) {

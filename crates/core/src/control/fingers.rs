@@ -6,27 +6,27 @@ use crate::dynamics::{Data, base_rotation};
 use crate::model::{Axis, Constraint, Model};
 use crate::spatial::{Scalar, Vec3};
 
-/// Joint that moves a finger: a joint of the group of a control, or a joint that mimics one of them.
+/// Finger of a gripper, moved by a joint of the group of a control or by a joint that mimics one of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Finger {
-    /// Index in the group of the joint, or of the joint that it mimics.
+    /// Index in the group of the joint that moves the finger, or of the joint that it mimics.
     pub(super) place: usize,
-    /// Index of the joint.
+    /// Index in the model of the joint that moves the finger.
     pub(super) joint: usize,
-    /// Rate of the joint divided by the rate of the joint of the group.
+    /// Rate of the joint that moves the finger, divided by the rate of the joint of the group.
     pub(super) ratio: f64,
 }
 
-/// Normal forces that oppose the closing motion of a finger.
+/// Sums of the normal forces that oppose the closing motion of a finger.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct FingerForce {
-    /// Sum of their magnitudes, N.
+    /// Sum of the magnitudes of the forces, N.
     pub(super) normal: f64,
-    /// Sum of the efforts with which they act on the joint of the finger, N m (N).
+    /// Sum of the efforts of the forces on the joint that moves the finger, N m (N).
     pub(super) effort: f64,
 }
 
-/// Returns the fingers that a group of joints (indices) moves.
+/// Returns the fingers that a group of joints moves; `joints` has their indices in the model.
 pub(super) fn fingers_of(joints: &[usize], model: &Model) -> Vec<Finger> {
     let own = joints.iter().enumerate().map(|(place, &joint)| Finger { place, joint, ratio: 1.0 });
     let mut fingers: Vec<Finger> = own.collect();

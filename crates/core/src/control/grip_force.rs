@@ -7,32 +7,34 @@ use super::gains::{PerJoint, check_numbers};
 use super::grip_memory::GripMemory;
 use crate::model::{Axis, BASE_NQ, Model};
 
-/// Law that closes the fingers of a gripper at a given rate until they touch, and then to a given force.
+/// Law that closes the fingers of a gripper at a given rate until they touch an object, and then grips it with
+/// a given force.
 ///
 /// A finger is moved by a joint of the group, or by a joint that mimics one of them. `N` is the mean of the
-/// normal forces of all fingers, from the contact forces of the simulation. Until all fingers touch, each
-/// joint moves at its closing rate `r`: `τ = d (r − q̇)`. Then the desired force `F` increases to `force`
+/// normal forces of all fingers, computed from the contact forces of the simulation. Until all fingers touch,
+/// each joint moves at its closing rate `r`: `τ = d (r − q̇)`. Then the desired force `F` increases to `force`
 /// within the time `ramp`, and
 ///
 /// `τ = λ (F + ∫ i (F − N) dt) − d q̇ − p Δ`
 ///
-/// with the lever `λ` of the joint, the effort that balances a normal force of 1 N at each of its fingers. It
-/// follows from the points and normals of the contacts. `Δ` is the displacement of the joint since all
-/// fingers touched, without its part along the closing motion: `p` keeps a group of independent joints from
-/// moving together with the object. If a finger no longer touches, the gripper closes again.
+/// with the lever `λ` of the joint: the effort that balances a normal force of 1 N at each of its fingers. The
+/// lever follows from the points and normals of the contacts. `Δ` is the displacement of the joint since all
+/// fingers touched, without its component along the closing motion; the stiffness `p` thus keeps independent
+/// joints from moving sideways together with the object. If a finger loses contact, the gripper closes at its
+/// closing rate again.
 #[derive(Clone, Debug)]
 pub struct GripForce {
     /// Normal force of each finger, N.
     pub force: f64,
     /// Rates of the joints until all fingers touch, rad/s (m/s); their signs are those of the closing motion.
     pub closing_rate: PerJoint,
-    /// Time in which the desired force increases from zero to `force`, s.
+    /// Time in which the desired force increases from zero to `force`, s; 0 for an immediate increase.
     pub ramp: f64,
     /// Gain `i` of the integral of the force error, 1/s.
     pub integral: f64,
     /// Damping `d`, N m s/rad (N s/m).
     pub damping: PerJoint,
-    /// Stiffness `p` against motions of the object together with the fingers, N m/rad (N/m).
+    /// Stiffness `p` against joint motions of the fingers together with the object, N m/rad (N/m).
     pub stiffness: PerJoint,
     /// Largest effort, N m (N); infinity for no limit.
     pub effort_limit: PerJoint,
@@ -74,8 +76,9 @@ impl GripForce {
         self.effort_limit.check_limit("effort_limit", count)
     }
 
-    /// Checks that the prismatic joints of the group can exert the force if the normals of the contacts are
-    /// along their axes. The lever of a revolute joint is not known before the contact.
+    /// Checks that the effort limits of the prismatic joints of the group permit the force, assuming that the
+    /// contact normals are parallel to the joint axes. The lever of a revolute joint is not known before the
+    /// contact.
     fn check_efforts(&self, control: &str, joints: &[usize], model: &Model) -> Result<(), ControlError> {
         let fingers = fingers_of(joints, model);
         for (place, &j) in joints.iter().enumerate() {
@@ -92,16 +95,16 @@ impl GripForce {
         Ok(())
     }
 
-    /// Updates the desired force and the integral `dt` seconds after the last tick, and writes the efforts of
-    /// the group to `tau`, which holds those of the damping and the stiffness. `levers` are the levers of the
-    /// joints, and `normal` is the mean normal force, N.
+    /// Updates the desired force and the integral `dt` seconds after the last control tick, and writes the
+    /// efforts of the group to `tau`, which initially holds the efforts of damping and stiffness. `levers` are
+    /// the levers of the joints, and `normal` is the mean normal force, N.
     fn squeeze(&self, memory: &mut GripMemory, (normal, dt): (f64, f64), levers: &[f64], tau: &mut [f64]) {
         let rise = if self.ramp > dt { self.force * dt / self.ramp } else { self.force };
         memory.reference = (memory.reference + rise).min(self.force);
         let change = self.integral * (memory.reference - normal) * dt;
         let command = memory.reference + memory.integral;
         let limits = |place: usize| self.effort_limit.at(place);
-        // the integral grows until the effort of a joint is at its limit; the fingers never pull
+        // the integral stops growing when the effort of a joint reaches its limit; the fingers never pull
         let room = |place: usize| {
             let (before, growth) = (tau[place] + levers[place] * command, levers[place] * change);
             let effort = before + growth;

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 pub(super) struct GripMemory {
     /// True while all fingers touch.
     pub(super) is_closed: bool,
-    /// Desired force `F`, N.
+    /// Current desired force `F`, N.
     pub(super) reference: f64,
     /// Integral of the force error times the gain, N.
     pub(super) integral: f64,
@@ -26,7 +26,7 @@ impl GripMemory {
         self.held.len()
     }
 
-    /// Prepares the state for closing again.
+    /// Resets the state to that of a gripper that closes.
     pub(super) fn release(&mut self) {
         (self.is_closed, self.reference, self.integral) = (false, 0.0, 0.0);
     }

@@ -82,7 +82,8 @@ impl KnownTree {
     /// Writes the inertia, bias and external forces of the reduced model of the robot's own joints `O` to
     /// `out`. The other joints `P` have no motor torques, so that their accelerations are
     /// `q̈_P = M_PP⁻¹ (Q_P − c_P − M_PO q̈_O)`. `M`, `c` and `Q` denote `M*`, `c*` and `Q*` of the tree
-    /// ([`FreeFloating`]); `Q_P` includes the torques of springs. The springs of the joints `O` are not included.
+    /// ([`FreeFloating`]); `Q_P` includes the torques of the springs of the joints `P`; those of the joints `O`
+    /// are not included.
     ///
     /// `M' = M_OO − M_OP M_PP⁻¹ M_PO`,  `c' = c_O − M_OP M_PP⁻¹ c_P`,  `Q' = Q_O − M_OP M_PP⁻¹ Q_P`
     pub(super) fn reduce<S: Scalar>(&mut self, out: &mut FreeFloating<S>) {

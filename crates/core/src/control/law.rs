@@ -25,7 +25,7 @@ pub enum Law {
     Pid(JointPid, JointReference),
     /// Compliance control of a frame.
     Compliance(Box<Compliance>, TaskReference),
-    /// Law that closes a gripper to a force.
+    /// Law that grips an object with a given force.
     Grip(Box<GripForce>),
     /// Law that follows external commands.
     External(Box<External>),
@@ -82,7 +82,7 @@ impl Law {
         }
     }
 
-    /// Returns the law if it closes a gripper to a force.
+    /// Returns the law if it is a grip-force law.
     pub fn grip(&self) -> Option<&GripForce> {
         match self {
             Self::Grip(law) => Some(law),

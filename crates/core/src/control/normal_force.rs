@@ -1,4 +1,4 @@
-//! Normal forces of the contacts on the bodies of a robot, which control laws may use.
+//! Normal forces of contacts on the bodies of a robot, as input to control laws.
 
 use crate::spatial::Vec3;
 

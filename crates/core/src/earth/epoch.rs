@@ -168,11 +168,11 @@ fn noon_of_2000() -> Instant {
     Instant::from_gregorian_tai_at_noon(2000, 1, 1)
 }
 
-/// Fault of a text that has a time scale, but is not a date and a time.
+/// Description of the fault of a text that ends with a time scale but does not begin with a date and a time.
 const OTHER_FORM: &str =
     "the part before the time scale is not a date and a time of the form YYYY-MM-DDThh:mm:ss.s";
 
-/// Returns the fault of a text without a time scale at its end.
+/// Returns a description of the fault of a text that does not end with a time scale.
 fn without_scale(text: &str) -> String {
     let time = text.split_once(['T', ' ']).map_or("", |(_, time)| time);
     let fault = if time.contains(['+', '-']) {
@@ -183,7 +183,8 @@ fn without_scale(text: &str) -> String {
     fault.to_owned()
 }
 
-/// Returns the fault of year, month, day, hour, minute and second, if one of them does not exist.
+/// Returns a description of the first field of `[year, month, day, hour, minute, second]` that is out of range;
+/// `None` if all are valid.
 fn fault([year, month, day, hour, minute, second]: [u16; 6]) -> Option<String> {
     let is_leap_year = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
     let days = match month {

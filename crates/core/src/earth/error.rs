@@ -14,7 +14,7 @@ pub enum EarthError {
     Epoch {
         /// Given text.
         text: String,
-        /// Part of the text that is wrong, and what is accepted.
+        /// Description of what is wrong with the text, and of what is accepted.
         fault: String,
     },
     /// An epoch in UTC is before 1972, when UTC adopted leap seconds.

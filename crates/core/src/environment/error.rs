@@ -99,7 +99,7 @@ pub enum EnvironmentError {
     /// The position of the Sun or the time is unknown.
     #[error(transparent)]
     Earth(#[from] EarthError),
-    /// An effect that is not part of this library failed.
+    /// A user-defined effect failed.
     #[error(transparent)]
     User(#[from] UserError),
     /// The numbers of bodies and wrenches differ.
@@ -112,7 +112,7 @@ pub enum EnvironmentError {
     },
 }
 
-/// Error of an effect that is not part of this library. Copies refer to the same error.
+/// Error of a user-defined effect. Clones refer to the same error object, and two values are equal if they do.
 #[derive(Clone, Debug, thiserror::Error)]
 #[error("{0}")]
 pub struct UserError(pub Arc<dyn Error + Send + Sync>);

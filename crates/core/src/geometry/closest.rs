@@ -28,7 +28,8 @@ pub fn closest(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> Result<Pro
     nearest_pieces(a, pose_a, b, pose_b).map(|(proximity, _)| proximity)
 }
 
-/// Returns the distance of two shapes whose dimensions have been checked.
+/// Computes the distance of two shapes like [`closest`], without checking their dimensions, which the caller
+/// has checked.
 ///
 /// # Errors
 /// The errors of [`closest`], except those for dimensions.

@@ -87,7 +87,7 @@ impl Hull {
         self.bounding_sphere
     }
 
-    /// Returns the sphere about the middle of the box around the vertices.
+    /// Returns the smallest sphere around the vertices whose centre is that of their axis-aligned bounding box.
     fn sphere_around(&self) -> BoundingSphere {
         let axes = [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 1.0)];
         let middle = axes.map(|axis| 0.5 * (self.farthest(axis).dot(axis) + self.farthest(-axis).dot(axis)));

@@ -60,14 +60,16 @@ pub fn manifold(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> Result<Ma
 /// Contact points of a pair of shapes.
 #[derive(Clone, Debug)]
 pub(crate) enum Points {
-    /// The witness points: those of a sphere, and those of shapes that exert no force on each other.
+    /// The pair of witness points, which is used if a shape is a sphere or if the shapes exert no force on each
+    /// other.
     Witness,
     /// Corners of the common part of two features.
     Many(Vec<ContactPoint>),
 }
 
 impl Points {
-    /// Returns the points; those of [`Points::Witness`] are the witness points in `proximity`.
+    /// Returns the list of points. For [`Points::Witness`], it consists of the pair of witness points in
+    /// `proximity`.
     pub(crate) fn list(&self, proximity: &Proximity) -> Cow<'_, [ContactPoint]> {
         match self {
             Self::Witness => Cow::Owned(vec![witness(proximity, 1.0)]),

@@ -19,7 +19,7 @@ impl Model {
         loops.chain(mimics.map(|(name, mimic)| self.compile_mimic(name, mimic))).collect()
     }
 
-    /// Returns a warning for each loop of which all joints have friction.
+    /// Returns a warning for each loop with more than one joint in which all joints have friction.
     pub(super) fn loops_with_friction(&self) -> Vec<ModelWarning> {
         let closures = self.closures.iter().filter_map(|closure| match &closure.constraint {
             Constraint::Frames { frames: [a, b], .. } => Some((&closure.name, a.body, b.body)),
@@ -35,7 +35,7 @@ impl Model {
         closures.filter_map(warning).collect()
     }
 
-    /// Returns the joints between two bodies of the tree, in ascending order.
+    /// Returns the indices of the joints on the path between two bodies of the tree, in ascending order.
     fn joints_between(&self, mut a: usize, mut b: usize) -> Vec<usize> {
         let mut joints = Vec::new();
         while a != b {

@@ -173,14 +173,14 @@ pub struct Joint {
     pub static_friction: Option<f64>,
     /// Rotor inertia reflected to the joint (multiplied by the gear ratio squared), kg m² (kg).
     pub rotor_inertia: f64,
-    /// Spring between the two links; `None` without a spring.
+    /// Spring that acts between the two links; `None` if there is none.
     pub spring: Option<JointSpring>,
     /// Coupling to another joint; `None` for a joint without such a coupling.
     pub mimic: Option<Mimic>,
 }
 
 impl Joint {
-    /// Creates a joint without friction, rotor, spring or limits.
+    /// Creates a joint without limits, damping, friction, rotor inertia, spring or coupling to another joint.
     pub fn new(name: &str, kind: JointKind, origin: Isometry3<f64>) -> Self {
         Self {
             name: name.to_owned(),

@@ -78,8 +78,7 @@ pub enum ModelError {
     )]
     FixedJoint { joint: String, what: &'static str },
     #[error(
-        "joint '{joint}' has a rest position of its spring but no stiffness; give a stiffness, or omit the rest \
-         position"
+        "joint '{joint}': the spring has a rest position but no stiffness; give a stiffness, or omit the rest position"
     )]
     NoStiffness { joint: String },
     #[error(
@@ -133,21 +132,21 @@ pub enum ModelWarning {
         /// Name of the link.
         link: String,
     },
-    /// The tangent stiffness of a spring is negative beyond a deflection that the position limits of its joint
-    /// permit.
+    /// The tangent stiffness of a spring is negative at some deflections within the position limits of its
+    /// joint.
     SofteningSpring {
         /// Name of the joint.
         joint: String,
-        /// Deflection from the rest position, rad (m).
+        /// Deflection from the rest position above which the tangent stiffness is negative, rad (m).
         deflection: f64,
         /// Unit of the deflection.
         unit: &'static str,
     },
-    /// All joints of a closed loop have friction, so that the friction torques at rest are not determined.
+    /// All joints of a closed loop have friction, so that the friction torques at rest are not unique.
     LoopFriction {
         /// Name of the loop.
         name: String,
-        /// Names of the joints of the tree between the two bodies of the loop.
+        /// Names of the joints on the path through the tree between the two bodies that the loop connects.
         joints: Vec<String>,
     },
     /// Text about another problem, which was found while reading a file.
@@ -192,9 +191,9 @@ impl fmt::Display for ModelWarning {
             ),
             Self::LoopFriction { name, joints } => write!(
                 f,
-                "all joints of the loop '{name}' have friction ({}), so that no equation determines which of them \
-                 hold the loop at rest, and friction torques and forces of the loop at rest depend on the order of \
-                 the joints; give friction to no more joints than the loop has independent ones",
+                "all joints of the loop '{name}' have friction ({}); the friction torques that hold the loop at rest are \
+                 therefore not unique, and the computed ones, like the forces in the loop, depend on the order of \
+                 the joints; give friction to at most as many joints as the loop has independent joints",
                 joints.join(", ")
             ),
             Self::Note(text) => f.write_str(text),

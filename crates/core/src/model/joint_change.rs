@@ -7,7 +7,7 @@ use super::joint_spring::JointSpring;
 use super::lookup::find;
 use super::tree::Model;
 
-/// New properties of a joint; `None` keeps the current value.
+/// New values of the properties of a joint; `None` keeps the current value.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct JointChange {
     /// Name of the joint.
@@ -50,7 +50,8 @@ impl JointChange {
 }
 
 impl Model {
-    /// Returns this robot with the damping, friction, rotor inertia or spring of one joint replaced.
+    /// Returns a copy of this robot in which one joint has the given damping, friction, rotor inertia and
+    /// spring.
     ///
     /// # Errors
     /// [`ModelError`] for an unknown or fixed joint, and for invalid values.

@@ -6,7 +6,8 @@ use crate::spatial::Real;
 /// Largest accepted stiffness and rest position, in SI units.
 const LARGEST: f64 = 1e20;
 
-/// Spring at a joint, `τ = −k d − k₃ d³` with the deflection `d = q − q₀` from the rest position `q₀`.
+/// Spring at a joint, with the torque (force) `τ = −k d − k₃ d³` at the deflection `d = q − q₀` from the rest
+/// position `q₀`.
 ///
 /// The torque depends on the position alone, so that the spring stores the energy `½ k d² + ¼ k₃ d⁴` and
 /// dissipates none. The damping of the joint is a separate property ([`Joint::damping`](super::Joint)).
@@ -23,7 +24,7 @@ pub struct JointSpring {
 
 impl JointSpring {
     /// Creates a spring from its stiffness, N m/rad (N/m), its cubic stiffness, N m/rad³ (N/m³), and its rest
-    /// position, rad (m). Returns `None` if all three are zero, that is, without a spring.
+    /// position, rad (m). Returns `None` if all three are zero, because there is no spring then.
     pub fn new(stiffness: f64, cubic_stiffness: f64, rest_position: f64) -> Option<Self> {
         let is_given = [stiffness, cubic_stiffness, rest_position] != [0.0; 3];
         is_given.then_some(Self { stiffness, cubic_stiffness, rest_position })
@@ -50,13 +51,17 @@ impl JointSpring {
         self.stiffness + 3.0 * self.cubic_stiffness * d * d
     }
 
-    /// Returns the deflection, rad (m), from which a softening spring has a negative tangent stiffness:
-    /// `√(k / (−3 k₃))`. `None` for a spring whose tangent stiffness is never negative.
+    /// Returns the deflection, rad (m), above which the tangent stiffness of a softening spring is negative:
+    /// `√(k / (−3 k₃))`. Returns `None` for a spring whose tangent stiffness is never negative.
     pub fn softening_limit(&self) -> Option<f64> {
         (self.cubic_stiffness < 0.0).then(|| (self.stiffness / (-3.0 * self.cubic_stiffness)).sqrt())
     }
 
-    /// Checks the spring of the joint `joint`, which is prismatic if `is_prismatic`.
+    /// Checks the spring of the joint with the name `joint`.
+    ///
+    /// # Errors
+    /// [`ModelError`] for a value that is not finite or above 1e20, a negative stiffness, a rest position
+    /// without stiffness, or a negative cubic stiffness without a linear one.
     pub(super) fn check(&self, joint: &str, is_prismatic: bool) -> Result<(), ModelError> {
         let [linear, cubic] = if is_prismatic { ["N/m", "N/m3"] } else { ["N m/rad", "N m/rad3"] };
         let Self { stiffness, cubic_stiffness, rest_position } = *self;
@@ -95,8 +100,8 @@ impl JointSpring {
         Ok(())
     }
 
-    /// Returns a warning if the tangent stiffness is negative within the position limits of the joint `joint`,
-    /// or beyond some deflection if the joint has no such limits.
+    /// Returns a warning if the tangent stiffness is negative at a position within the position limits of the
+    /// joint with the name `joint`, or at any position if the joint has no such limits.
     pub(super) fn warning(
         &self,
         joint: &str,

@@ -59,7 +59,7 @@ pub struct JointProperties {
     pub static_friction: f64,
     /// Position, velocity and effort limits, which are enforced only on request.
     pub limits: Limits,
-    /// Spring between the two links; `None` without a spring.
+    /// Spring that acts between the two links; `None` if there is none.
     pub spring: Option<JointSpring>,
     /// Unit axis in the child link's axes.
     pub axis: Vec3<f64>,

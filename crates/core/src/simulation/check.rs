@@ -190,7 +190,8 @@ fn check_contacts(contacts: &[Contact]) -> Result<(), ContactError> {
     Ok(())
 }
 
-/// Checks that the contacts of latches exist, have normal forces and are between the systems of the capture.
+/// Checks that the contacts on which latches depend exist, have compliant normal forces and are between the two
+/// systems of the capture.
 fn check_latches(events: &[Event], contacts: &[Contact]) -> Result<(), WorldError> {
     for Event { name, when, action } in events {
         let (When::Latch(envelope), Action::Capture { by, of, .. }) = (when, action) else { continue };

@@ -97,8 +97,8 @@ impl EnvironmentLoads {
         Ok(())
     }
 
-    /// Returns the transformation at `t`, s, from the frame of the local reference orbit to W for the robot
-    /// `model`; `None` if there is no local reference orbit.
+    /// Returns the transformation at `t`, s, of the state of the robot `model` from the frame of its local
+    /// reference orbit to W; `None` if there is no local reference orbit.
     pub(super) fn shift(&mut self, t: f64, model: &Model) -> Result<Option<Shift>, SimulationError> {
         if self.local_reference.is_none() {
             return Ok(None);

@@ -127,8 +127,9 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         }
     }
 
-    /// Initializes the states of the contacts and checks that bodies overlap only where the contact permits
-    /// it; `names` are those of the systems, for errors. Requires the kinematics of `state` in the trees.
+    /// Initializes the states of the contacts and checks that bodies overlap only where their contact permits
+    /// it. `names` has the names of the systems for error messages. Requires the kinematics of `state` in the
+    /// trees.
     pub(super) fn start_contacts(
         &self,
         names: &[String],
@@ -152,8 +153,8 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         self.contacts.begin((t, end), &self.trees, state).map_err(at_time(t))
     }
 
-    /// Determines whether bodies with an impact law touch at `t`, s. Requires the kinematics of `state` in the
-    /// trees.
+    /// Determines whether bodies with an impact law strike each other, or begin to rest on each other, at `t`,
+    /// s. Requires the kinematics of `state` in the trees.
     pub(super) fn touched(&mut self, t: f64, state: &State<S>) -> Result<Touched, SimulationError> {
         if !self.contacts.has_impact_laws() {
             return Ok(Touched::default());
@@ -161,7 +162,7 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         self.contacts.touched(&self.trees, state).map_err(at_time(t))
     }
 
-    /// Applies the impacts of bodies with an impact law at `t`, s; see [`Contacts::strike`].
+    /// Applies the impacts between bodies with an impact law at `t`, s; see [`Contacts::strike`].
     pub(super) fn strike(
         &mut self,
         t: Option<f64>,
@@ -174,7 +175,8 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         self.contacts.strike(t, &mut self.trees, state, is_endless).map_err(at_time(t.unwrap_or_default()))
     }
 
-    /// Corrects the forces of bodies that rest on each other; see [`Contacts::correct`].
+    /// Corrects the forces between bodies that rest on each other and returns the largest change of a velocity,
+    /// m/s; see [`Contacts::correct`].
     pub(super) fn correct_forces(
         &mut self,
         hold: &mut Hold,

@@ -18,7 +18,7 @@ pub(crate) struct Latch {
     /// model.
     pub(super) frames: [(usize, usize); 2],
     pub(super) envelope: Envelope,
-    /// Indices of the contacts that must touch.
+    /// Indices of the declared contacts that must touch.
     pub(super) touching: Vec<usize>,
     /// True if these contacts touched at the start of the step.
     pub(super) is_touching: bool,
@@ -53,9 +53,9 @@ impl Latch {
         inside >= -ROUNDING
     }
 
-    /// Returns the margin to the next change of [`Latch::is_held`], negative if the change is overdue;
-    /// `inside` is a value of [`Latch::inside`]. Contacts change between steps, so that the margin is infinite
-    /// while they do not touch.
+    /// Returns the margin to the next change of [`Latch::is_held`], negative if the change is overdue; `inside`
+    /// is a value of [`Latch::inside`]. The margin is infinite while a required contact does not touch, because
+    /// contacts begin and cease to touch only between steps.
     pub(super) fn margin(&self, inside: f64) -> f64 {
         if !self.is_touching {
             return f64::INFINITY;

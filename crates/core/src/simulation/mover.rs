@@ -31,9 +31,9 @@ impl<S: Scalar> Mover<'_, S> {
         }
     }
 
-    /// Applies the impacts of bodies with an impact law, and those of joints that move into their stops, at
-    /// `t`, s; `None` for a copy of the state. Does nothing with an external engine, which handles stops
-    /// itself.
+    /// Applies the impacts between bodies with an impact law, and those of joints that move into their stops,
+    /// at `t`, s. `t` is `None` for a copy of the state, whose touches are not recorded. Does nothing with an
+    /// external engine, which handles stops itself.
     pub(super) fn resolve_impacts(
         &self,
         equations: &mut Equations<'_, S>,
@@ -46,8 +46,8 @@ impl<S: Scalar> Mover<'_, S> {
         }
     }
 
-    /// Computes the forces of bodies that rest on each other under an impact law, for a step over `interval`,
-    /// s. Returns true if bodies have separated.
+    /// Computes the forces between bodies with an impact law that rest on each other, for a step over
+    /// `interval`, s. Returns true if bodies have separated. Does nothing with an external engine.
     pub(super) fn hold_contacts(
         &mut self,
         equations: &mut Equations<'_, S>,

@@ -55,9 +55,9 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Applies the impacts of bodies with an impact law, and those of joints that move into their stops, at
-    /// `t`, s, the start of a step over `interval`, s. If every step is recorded, adds one row before and one row after the impacts, at the
-    /// same time.
+    /// Applies the impacts between bodies with an impact law, and those of joints that move into their stops,
+    /// at `t`, s, the start of a step over `interval`, s. If every step is recorded, adds one row before and
+    /// one row after the impacts, at the same time.
     pub(super) fn impacts(&mut self, t: f64, interval: (f64, f64)) -> Result<(), SimulationError> {
         let Touched { has_impact, is_new } = self.equations.touched(t, &self.state)?;
         let mut pairs = self.equations.trees.iter().zip(&self.state.trees);

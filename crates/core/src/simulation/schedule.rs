@@ -181,7 +181,8 @@ impl Schedule {
         t > other + self.tolerance()
     }
 
-    /// Returns true if `grid`, s, is later than `last`, s, by more than the tolerance at `last`.
+    /// Returns true if the grid point `grid`, s, is later than the end `last`, s, by more than the tolerance
+    /// for comparing instants, or the rounding error of `last` if that is larger.
     fn is_beyond(&self, grid: f64, last: f64) -> bool {
         grid > last + self.tolerance().max(4.0 * f64::EPSILON * last)
     }
@@ -222,8 +223,9 @@ impl Schedule {
     /// Returns the interval that begins at the current cut, and the position at its end; `None` at the
     /// planned end of the run.
     ///
-    /// A cut that equals the planned end within the tolerance for comparing instants is the last cut, as it
-    /// would be without a planned end: `140 · 0.005` is not `0.7`.
+    /// If the last grid point equals the planned end within the tolerance for comparing instants, the run ends
+    /// at the grid point, so that its cuts are those of a run without a planned end. In floating point,
+    /// `140 · 0.005` differs from `0.7`.
     pub(super) fn following(&self) -> Option<(Interval, Cursor)> {
         let Cursor { now, mut next_grid, mut next_event } = self.at;
         if self.duration.is_some_and(|duration| now >= duration - self.tolerance()) {

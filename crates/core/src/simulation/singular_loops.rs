@@ -7,8 +7,8 @@ use crate::spatial::{Real, Scalar};
 
 impl<S: Real> Tree<'_, S> {
     /// Returns the names of the loops and mimic joints whose constraints have become linearly dependent, each
-    /// with the time, s. Requires that the state at `t`, s, was the last one to be projected onto the momentum
-    /// and the loops.
+    /// with the time at which this happened, s. Requires that the state at `t`, s, was the last one to be
+    /// projected onto the momentum and the loops.
     fn find_singular(&mut self, t: f64) -> Vec<(String, f64)> {
         if self.loops.is_empty() {
             return Vec::new();

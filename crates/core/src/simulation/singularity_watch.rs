@@ -26,7 +26,7 @@ pub struct SingularLoop {
 #[derive(Clone, Debug, Default)]
 pub(super) struct SingularityWatch {
     rows: Vec<WatchedRow>,
-    /// True for joints that were kept at rest in the last update, `(n,)`; empty if there were none.
+    /// True for each joint, `(n,)`, that was kept at rest in the last update; empty if there were none.
     kept: Vec<bool>,
 }
 

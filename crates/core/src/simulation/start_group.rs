@@ -92,8 +92,8 @@ impl Shared {
         let rows = self.row_count(&schedule);
         let (is_native, is_adaptive) = (engine.is_none(), self.is_adaptive());
         let has_every_step = self.record_every == 1 && !is_adaptive;
-        // the rows of a system contain neither the accelerations that torques on the rest of its tree cause, nor
-        // those just before friction of a contact jumps from its static to its kinetic value
+        // the rows of a system contain neither the accelerations that torques on the rest of its tree cause,
+        // nor the accelerations just before contact friction changes from its static to its kinetic value
         let has_friction =
             self.contacts.iter().any(|contact| contact.law.is_some_and(|law| law.friction.is_some()));
         let rows_suffice = has_every_step && ((events.list.is_empty() && !has_friction) || !is_native);
@@ -277,8 +277,8 @@ impl Shared {
         self.integrator == Integrator::DormandPrince
     }
 
-    /// Returns the indices of the bodies of a system (index in the group) on which contacts may exert normal
-    /// forces.
+    /// Returns the indices of the bodies of the system with index `system` in the group on which contacts may
+    /// exert compliant normal forces.
     fn touching_bodies(&self, system: usize, model: &Model) -> Vec<usize> {
         let with_forces = self.contacts.iter().filter(|contact| contact.law.is_some());
         let sides = with_forces.flat_map(|contact| contact.sides.iter().flatten());

@@ -67,7 +67,8 @@ impl<S: Scalar> RunState<'_, S> {
         }
         // 4 loads of the environment, 5 controllers that are due
         self.loads_and_controllers(interval, end)?;
-        // 6 which joints stick, slip or rest at a stop during the step, and the forces of rigid bodies at rest
+        // 6 which joints stick, slip or rest at a stop during the step, and the forces between rigid bodies at
+        // rest
         self.mover.solve_modes(&mut self.equations, &self.state);
         if self.mover.hold_contacts(&mut self.equations, &mut self.state, (t, end))? {
             self.take_touches();
@@ -110,7 +111,7 @@ impl<S: Scalar> RunState<'_, S> {
         self.systems.iter().any(|run| !run.controllers.set.controls().is_empty())
     }
 
-    /// Passes the normal forces of the contacts to the controllers that use them.
+    /// Passes the normal forces of the contacts to the controllers of each system that uses them.
     fn pass_normal_forces(&mut self) {
         let Self { equations: EquationsOfMotion { trees, members, contacts, .. }, systems, .. } = self;
         for (number, run) in systems.iter_mut().enumerate() {

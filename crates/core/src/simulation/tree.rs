@@ -20,8 +20,8 @@ pub(crate) struct Tree<'a, S> {
     pub(crate) data: Data<S>,
     /// Commanded joint torques, `(n,)`, N m or N, without the compensation of Coulomb friction.
     pub(crate) command: Vec<S>,
-    /// Generalized forces of a stage, `(nv,)`, N m or N: command, springs, damping and friction; zero at the
-    /// base.
+    /// Generalized forces of a stage, `(nv,)`, N m or N: sum of the command and of the torques of springs,
+    /// damping and friction; zero at the base.
     pub(super) forces: Vec<S>,
     /// Buffer for accelerations or changes of velocity, `(nv,)`.
     pub(super) scratch: Vec<S>,
@@ -306,7 +306,8 @@ impl<'a, S: Real> Tree<'a, S> {
     }
 }
 
-/// Returns the argument of the projections for joints that must not move; `kept` is empty without such joints.
+/// Returns the argument with which the projections keep the joints in `kept` from moving; `kept` is empty if
+/// there are no such joints.
 fn locked(kept: &[bool]) -> Option<(&[bool], &'static [f64])> {
     (!kept.is_empty()).then_some((kept, &[][..]))
 }

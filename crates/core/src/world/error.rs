@@ -106,7 +106,7 @@ pub enum WorldError {
     NotTriggered { name: String, reason: &'static str },
 }
 
-/// Reason why a latch cannot depend on a contact.
+/// Reason for which a latch cannot depend on a contact.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LatchContact {
     /// There is no contact with this name.
@@ -114,13 +114,13 @@ pub enum LatchContact {
         /// Names of the contacts of the world.
         known: Vec<String>,
     },
-    /// The contact has no law of the normal force.
+    /// The contact has no law of a compliant normal force.
     NoForce,
     /// The contact is not between the two systems of the capture.
     OtherSystems,
 }
 
-/// Returns the reason as part of a message.
+/// Returns the reason as the end of an error message, with the suggested fix.
 fn why(problem: &LatchContact) -> String {
     match problem {
         LatchContact::Unknown { known } if known.is_empty() => {
@@ -130,7 +130,7 @@ fn why(problem: &LatchContact) -> String {
             format!("there is no contact with this name; the contacts are: {}", known.join(", "))
         }
         LatchContact::NoForce => {
-            "no normal force acts in it, so it never touches; give it a law of the normal force".to_owned()
+            "it has no compliant normal force, which a latch requires; give the contact one, such as HuntCrossley".to_owned()
         }
         LatchContact::OtherSystems => {
             "it is not between the two systems of the capture; give a contact between both".to_owned()

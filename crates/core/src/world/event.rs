@@ -46,7 +46,8 @@ pub enum When {
     },
     /// When the caller of the stepper triggers the event.
     OnCommand,
-    /// When the two frames of a capture have been within an envelope for the time [`Envelope::held_for`].
+    /// When the two frames of a capture have satisfied the conditions of an envelope for the time
+    /// [`Envelope::held_for`].
     Latch(Envelope),
 }
 
@@ -61,7 +62,8 @@ impl When {
     }
 }
 
-/// Envelope of a latch: the frames must be close to each other and slow relative to each other.
+/// Conditions under which a latch closes: limits of the distance and of the relative velocity of its frames,
+/// and contacts that must touch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Envelope {
     /// Largest distance and angle between the frames, m and rad.
@@ -71,7 +73,7 @@ pub struct Envelope {
     pub slower_than: [f64; 2],
     /// Time for which all conditions must hold without interruption, s.
     pub held_for: f64,
-    /// Names of the contacts that must touch, also without interruption.
+    /// Names of the contacts that must touch, without interruption during `held_for`.
     pub touching: Vec<String>,
 }
 

@@ -1,4 +1,4 @@
-//! Contact forces for the laws that close grippers.
+//! Contact forces that the grip-force laws use.
 
 use super::ControllerSet;
 use crate::control::error::ControlError;
@@ -8,20 +8,20 @@ use crate::model::Model;
 use crate::spatial::Scalar;
 
 impl<S: Scalar> ControllerSet<'_, S> {
-    /// Returns true if a law uses the normal forces of contacts.
+    /// Returns true if any of the laws uses the normal forces of contacts.
     pub fn uses_normal_forces(&self) -> bool {
         self.controls.iter().any(|control| control.law.grip().is_some())
     }
 
-    /// Returns the list of the normal forces of all contacts on the robot, to be replaced by those of the
-    /// present instant.
+    /// Returns the list of the normal forces of all contacts on the robot, which the caller replaces by those
+    /// of the current time. The next evaluation then recomputes the tracking errors.
     pub fn normal_forces_mut(&mut self) -> &mut Vec<NormalForce> {
         self.evaluated_at = f64::NAN;
         &mut self.normal_forces
     }
 
-    /// Checks that a contact involves each finger of the laws that grip. `touching` are the indices of the
-    /// bodies on which contacts may exert normal forces.
+    /// Checks that every finger of the grip-force laws can be touched. `touching` has the indices of the bodies
+    /// on which contacts may exert normal forces.
     ///
     /// # Errors
     /// [`ControlError::FingerWithoutContact`] for the first finger without a contact.

@@ -246,10 +246,9 @@ fn reduce_to_frame<S: Scalar>(
     }
 }
 
-/// Computes the Jacobian, row major `(6, k)`, of the frame of the last [`reduce_to_frame`] with respect to
-/// `joints` of the robot, `(k,)`, and writes it to the second array; the first one is the Jacobian with
-/// respect to all `n` joints. If the robot has closed loops, the motion of the joints without a motor is
-/// included.
+/// Computes the Jacobian, row major `(6, k)`, of the frame of the last [`reduce_to_frame`] with respect to the
+/// `k` joints in `joints`, and writes it to `out`. `all` is the Jacobian, `(6, n)`, with respect to all joints
+/// of the robot. If the robot has closed loops, the motion of the joints without a motor is included.
 fn driven_jacobian<S: Scalar>(
     (known, looped): (&mut Option<Box<KnownTree>>, &mut Option<Box<Looped<S>>>),
     is_relative: bool,

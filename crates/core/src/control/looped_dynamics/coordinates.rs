@@ -58,7 +58,7 @@ impl LoopedDynamics {
         }
     }
 
-    /// Computes the reduced equations, and eliminates the coordinates with given efforts.
+    /// Computes the reduced equations of motion and eliminates the coordinates with given efforts.
     pub(super) fn reduce(&mut self) {
         let Self { n, joints, hybrid, inertia, load, tau, commands, null_damping, work, .. } = self;
         let f = joints.count();
@@ -119,7 +119,8 @@ impl LoopedDynamics {
 }
 
 impl Workspace {
-    /// Selects some of `n` joints and of `f` coordinates, which it returns.
+    /// Returns the indices of those of the `n` joints that `is_row` selects, and of those of the `f`
+    /// coordinates that `is_column` selects.
     fn select(
         &mut self,
         n: usize,

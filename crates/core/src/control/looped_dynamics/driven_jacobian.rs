@@ -14,7 +14,8 @@ impl LoopedDynamics {
     ///
     /// While the loops are closed, `J_A q̇_A` is the velocity of the frame that the driven joints cause, and
     /// the torques `J_Aᵀ F` do the work of a wrench `F` on the frame. Requires
-    /// [`Looped::update`](super::Looped::update); [`eliminate`](Self::eliminate) chooses other joints.
+    /// [`Looped::update`](super::Looped::update). Replaces the independent joints that
+    /// [`eliminate`](Self::eliminate) chose.
     pub(in crate::control) fn driven_jacobian<S: Scalar>(
         &mut self,
         jacobian: &[S],

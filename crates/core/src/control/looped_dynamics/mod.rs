@@ -1,4 +1,4 @@
-//! Torques of controls on robots with closed loops.
+//! Joint torques of the controls of robots with closed loops.
 
 mod coordinates;
 mod driven_jacobian;
@@ -111,9 +111,9 @@ pub(super) struct LoopedDynamics {
 /// Buffers of [`LoopedDynamics`], which keep their capacity between updates.
 #[derive(Debug, Default)]
 struct Workspace {
-    /// Joints of the tree.
+    /// Selected joints (indices in the tree).
     rows: Vec<usize>,
-    /// Coordinates, which are the columns of `G`.
+    /// Selected coordinates (columns of `G`).
     columns: Vec<usize>,
     class: Vec<u8>,
     commands: Vec<JointCommand>,

@@ -1,4 +1,4 @@
-//! Search for a configuration that closes the loops, from a configuration given by the user.
+//! Search for a configuration that closes the loops, starting from a configuration given by the user.
 
 use super::ClosedLoops;
 use super::projection::{closure_errors, factorize};
@@ -20,11 +20,11 @@ const LEAST_DAMPING: f64 = 1e-12;
 /// Sum of the squares of all errors, m² and rad², below which Newton's method takes over again.
 const CLOSE: f64 = 1e-12;
 
-/// Moves the configuration `q`, `(nq,)`, to a nearby one that satisfies the constraints of `loops`, by
-/// Newton's method in the metric of the kinetic energy. If this fails, as it can far from a closed
-/// configuration if there are more constraints than joints, damped steps from `q` precede it.
-/// [`ClosedLoops::errors`] returns the remaining errors afterwards, which are not small if there is no such
-/// configuration nearby.
+/// Moves the configuration `q`, `(nq,)`, to a nearby one that satisfies the constraints of `loops`, by Newton's
+/// method in the metric of the kinetic energy. If this fails, which may happen far from a closed configuration
+/// if there are more constraints than joints, the search starts again from `q` with damped steps before
+/// Newton's method. [`ClosedLoops::errors`] returns the remaining errors afterwards, which are not small if
+/// there is no such configuration nearby.
 pub fn close_loops(model: &Model, data: &mut Data<f64>, loops: &mut ClosedLoops<f64>, q: &mut [f64]) {
     let given = q.to_vec();
     if newton(model, data, loops, q) {
@@ -53,9 +53,9 @@ fn newton(model: &Model, data: &mut Data<f64>, loops: &mut ClosedLoops<f64>, q: 
     false
 }
 
-/// Reduces the squares of the constraint errors `φ` by steps `δ = −M⁻¹ Jᵀ (A + μ 1)⁻¹ φ`, each of which
-/// minimizes `|φ + J δ|² + μ δᵀ M δ`. The damping `μ` is reduced after a step that reduces the errors, and
-/// increased after any other step, which is undone. Returns true if the errors become small.
+/// Reduces the sum of the squares of the constraint errors `φ` by steps `δ = −M⁻¹ Jᵀ (A + μ 1)⁻¹ φ`, each of
+/// which minimizes `|φ + J δ|² + μ δᵀ M δ`. The damping `μ` is reduced after a step that reduces the errors,
+/// and increased after any other step, which is undone. Returns true if the errors become small.
 ///
 /// Source: Nocedal and Wright, Numerical Optimization, 2006, section 10.3 (Levenberg-Marquardt method).
 fn descend(model: &Model, data: &mut Data<f64>, loops: &mut ClosedLoops<f64>, q: &mut [f64]) -> bool {
@@ -98,7 +98,7 @@ fn step(q: &mut [f64], delta: &[f64]) {
 }
 
 impl ClosedLoops<f64> {
-    /// Returns `φᵀ φ`, m² and rad², of the errors computed last.
+    /// Returns the sum of squares `φᵀ φ`, m² and rad², of the errors that were computed last.
     fn squared_errors(&self) -> f64 {
         self.error.iter().map(|error| error * error).sum()
     }

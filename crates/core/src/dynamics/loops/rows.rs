@@ -13,7 +13,7 @@ pub(super) struct Row<S> {
     pub(super) efforts: [S; 2],
 }
 
-/// Buffers of the constraints on the joints, which their first computation allocates.
+/// Buffers for the computation of the constraints on the joints, which allocates them when it is first called.
 #[derive(Clone, Debug, Default)]
 pub(super) struct JointRows<S> {
     /// `J`, row major `(m, nv)`.

@@ -1,5 +1,5 @@
-//! Reader of `<joint>`: its kind, axis, limits, friction, rotor inertia and spring, and the joint that it
-//! mimics.
+//! Reader of the element `<joint>`: kind, axis, limits, damping, friction, rotor inertia, spring and mimic
+//! coupling of a joint.
 
 use super::element::Element;
 use super::error::UrdfError;

@@ -15,7 +15,7 @@ pub(super) struct Near<'a> {
     folder: Option<&'a Path>,
     /// Folders that are packages or contain packages.
     packages: &'a [PathBuf],
-    /// Folders in which a mesh file is searched, by the folder in the name of the file.
+    /// Folders in which a mesh file is searched for; the key is the folder in the name of the file.
     places: HashMap<PathBuf, Rc<[Place]>>,
     /// Names of the entries of each folder; empty if the folder does not exist.
     listings: HashMap<PathBuf, Rc<HashSet<OsString>>>,

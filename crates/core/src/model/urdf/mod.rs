@@ -70,7 +70,7 @@ pub fn from_file(path: &Path, options: &Options<'_>) -> Result<Model, UrdfError>
         .map_err(|error| error.in_file(path))
 }
 
-/// Adds the path of the file to the reasons why collision shapes were not read.
+/// Prefixes the path of the URDF file to the reasons for which collision shapes were skipped.
 fn with_file_in_reasons(mut model: Model, path: &Path) -> Model {
     if model.description.links.iter().any(|link| !link.skipped_collisions.is_empty()) {
         for link in &mut Arc::make_mut(&mut model.description).links {

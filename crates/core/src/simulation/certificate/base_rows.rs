@@ -80,13 +80,14 @@ impl BaseRows {
         largest.truncation = largest.truncation.max(truncation(h, before.v, before.a));
     }
 
-    /// Returns the truncation errors due to the jerk `ȧ` in an interval of length `h`, s, of the force, N, and
-    /// of the moment, N m. They are the change of the base rows `found` if the velocity in the middle of the
-    /// interval, `(v₀ + v₁)/2 − h²/8 ȧ`, replaces the mean of the velocities at its ends. The mean of the
-    /// inertial forces over the interval differs from `found` by a third of this change.
+    /// Returns the truncation errors of the force, N, and of the moment, N m, that are due to the jerk `ȧ` in
+    /// an interval of length `h`, s. They are the changes of the base rows `found` when the mean of the
+    /// velocities at the ends of the interval is replaced by the velocity in its middle,
+    /// `(v₀ + v₁)/2 − h²/8 ȧ`. The mean of the inertial forces over the interval differs from `found` by a
+    /// third of this change.
     ///
-    /// The jerk `ȧ = 2/h ((v₁ − v₀)/h − a₀)` of the interval includes the variation of the acceleration under
-    /// constant torques, which can be fast in a motion of light links, although the load moves slowly.
+    /// The jerk of the interval is `ȧ = 2/h ((v₁ − v₀)/h − a₀)`. It includes changes of the acceleration under
+    /// constant torques, which can be fast for light links even while a heavy load moves slowly.
     fn jerk(&mut self, model: &Model, h: f64, before: &TraceRow<'_>, found: Force<f64>) -> [f64; 2] {
         if model.joints().is_empty() {
             return [0.0; 2];
@@ -147,24 +148,27 @@ impl Residuals {
         worst(relative(self.residual[0], linear), relative(self.residual[1], angular))
     }
 
-    /// Returns the largest residual that passes. It is 1e-6 plus the truncation errors of the differences at
-    /// the largest rates and the largest jerk of the run, and at most 0.1, so that the check fails if a
-    /// wrench as large as the inertial forces is missing. `size` is that of [`Residuals::residual`].
+    /// Returns the largest relative residual that passes the check: 1e-6 plus the truncation errors of the
+    /// finite differences at the largest rates and the largest jerk of the run, but at most 0.1, so that the
+    /// check fails if a wrench as large as the inertial forces is missing. `size` is that of
+    /// [`Residuals::residual`].
     pub(super) fn gate(&self, size: f64) -> f64 {
         let [linear, angular] = self.scale_with(size);
         let jerk = relative(self.jerk[0], linear).max(relative(self.jerk[1], angular));
         (1e-6 + self.truncation + jerk).min(0.1)
     }
 
-    /// Returns the scales of forces, N, and moments, N m, of a robot with the radius of gyration `size`, m.
+    /// Returns the scales of the forces, N, and of the moments, N m, to which residuals are compared, for a
+    /// robot with the radius of gyration `size`, m.
     fn scale_with(&self, size: f64) -> [f64; 2] {
         let [linear, angular] = self.scale;
         [linear, angular.max(1e-9 * size * linear)]
     }
 }
 
-/// Returns the base rows of inverse dynamics with configuration, velocity and acceleration `[q, v, a]`, about
-/// the centre of mass in base axes. `forces` is a buffer, `(nv,)`.
+/// Returns the force, N, and the moment about the centre of mass, N m, in base axes, that inverse dynamics
+/// requires at the base for the configuration, velocity and acceleration `[q, v, a]`. `forces` is a buffer,
+/// `(nv,)`.
 fn base_wrench(
     model: &Model,
     data: &mut Data<f64>,

@@ -11,7 +11,8 @@ use crate::spatial::Vec3;
 /// the smaller reach and the distance by which they may approach each other within the step. The reach of a
 /// piece is the radius of its bounding sphere about the origin of its frame.
 pub(super) const FAR: f64 = 0.1;
-/// The same fraction for the gap between the pieces themselves.
+/// Fraction of the smaller reach that is subtracted from the gap between the pieces themselves to obtain
+/// [`Touching::clearance`].
 const CLEAR: f64 = 0.01;
 /// Safety factor for the distance that pieces travel within the step at their present velocities.
 pub(super) const TRAVEL: f64 = 3.0;
@@ -99,9 +100,9 @@ impl Touching {
         self.sides.iter().map(|side| side.reach).fold(f64::MAX, f64::min)
     }
 
-    /// Returns true if the pieces will not touch while they travel the distance `travel`, m, unless they
-    /// accelerate strongly. It suffices that their bounding spheres show this, or the gap that was computed in
-    /// an earlier step. The result is the same as with the present gap.
+    /// Returns true if the pieces cannot touch while they travel the distance `travel`, m, towards each other,
+    /// according to their bounding spheres or to the gap that an earlier step computed. The result is the same
+    /// as with the present gap.
     fn stays_apart(&mut self, motions: &[SideMotion; 2], travel: f64) -> bool {
         if self.has_touched() {
             return false;
@@ -113,16 +114,16 @@ impl Touching {
         self.takes_clearance(travel)
     }
 
-    /// Subtracts `travel`, m, from the clearance and returns true if the clearance is larger; otherwise sets
-    /// the clearance to zero.
+    /// Subtracts `travel`, m, from the clearance and returns true if the clearance exceeds `travel`; otherwise
+    /// sets the clearance to zero and returns false.
     fn takes_clearance(&mut self, travel: f64) -> bool {
         let is_clear = self.clearance > travel;
         self.clearance = if is_clear { self.clearance - travel } else { 0.0 };
         is_clear
     }
 
-    /// Returns true if bounding spheres show that the pieces will not touch while they travel the distance
-    /// `travel`, m.
+    /// Returns true if, according to their bounding spheres, the pieces cannot touch while they travel the
+    /// distance `travel`, m, towards each other.
     pub(super) fn is_far(&self, [a, b]: &[SideMotion; 2], travel: f64) -> bool {
         let [reach_a, reach_b] = [&self.sides[0], &self.sides[1]].map(|side| side.reach);
         let gap = (b.frame.pos - a.frame.pos).norm() - reach_a - reach_b;

@@ -35,8 +35,9 @@ impl Contacts {
         }
     }
 
-    /// Begins the touches of the contacts with an impact law that did not touch before `t`, s, and adds
-    /// records of their touch-downs to `happened`. `points` are all points at which such contacts touch.
+    /// Begins the touches of those contacts with an impact law that touch at `t`, s, but did not touch before,
+    /// and adds records of their touch-downs to `happened`. `points` has all points at which such contacts
+    /// touch.
     pub(super) fn begin_touches(&mut self, t: f64, points: &[TouchedPoint]) {
         for point in points.iter().filter(|point| point.velocity[0] <= ImpactLaw::REST_SPEED) {
             let touching = &self.list[point.number];
@@ -54,8 +55,8 @@ impl Contacts {
         }
     }
 
-    /// Ends the touches of the contacts of `points` of which no pieces rest on each other, and adds records of
-    /// their lift-offs at `t`, s, to `happened`.
+    /// Ends the touches of those contacts in `points` of which no pieces rest on each other any more, and adds
+    /// records of their lift-offs at `t`, s, to `happened`.
     pub(super) fn end_touches(&mut self, t: f64, points: &[TouchedPoint]) {
         for point in points {
             let contact = self.list[point.number].contact;
@@ -73,7 +74,7 @@ impl Contacts {
         }
     }
 
-    /// Returns the sums of the integrals of the pairs of a contact with an impact law.
+    /// Returns the integrals of a contact with an impact law, summed over its pairs of pieces.
     fn integrals(&self, contact: usize) -> Integrals {
         let own = self.list.iter().zip(&self.states).filter(|(touching, _)| touching.contact == contact);
         own.fold(Integrals::ZERO, |sum, (_, state)| sum.with(state))

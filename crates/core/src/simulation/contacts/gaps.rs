@@ -28,8 +28,8 @@ pub(super) struct Gaps {
 }
 
 impl Gaps {
-    /// Creates the bounding spheres of the pieces in `list`, which is sorted by contact; `count` is the
-    /// number of contacts.
+    /// Creates the workspace with the bounding spheres of the pieces in `list`, which is sorted by contact;
+    /// `count` is the number of contacts.
     pub(super) fn new(list: &[Touching], count: usize) -> Self {
         let mut new = Self { pieces: vec![Vec::new(); count], ..Self::default() };
         for contact in 0..count {

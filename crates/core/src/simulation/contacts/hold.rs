@@ -1,9 +1,9 @@
-//! Forces of pieces that rest on each other under an impact law.
+//! Contact forces between pieces with an impact law that rest on each other.
 //!
-//! The forces are constant during a step, in the axes of the first side. They are those for which the
-//! velocities at the end of the step satisfy the conditions of the impact law without restitution, found by
-//! trial steps: `u = b + h W F`, with the velocities `u` at the end of a trial step, its length `h` and the
-//! matrix `W` at its start.
+//! The forces are constant during a step, in the axes of the first side. They are chosen such that the
+//! velocities at the end of the step satisfy the conditions of the impact law without restitution. Trial steps
+//! determine them: the velocities at the end of a step of length `h` are modelled as `u = b + h W F`, with the
+//! forces `F` and the matrix `W` at the start of the step, and every trial step corrects `b`.
 
 use super::Contacts;
 use super::mode::Phase;
@@ -17,40 +17,42 @@ use crate::simulation::state::State;
 use crate::simulation::tree::Tree;
 use crate::spatial::Real;
 
-/// Point of a hold.
+/// Point at which pieces rest on each other during a step.
 #[derive(Clone, Copy, Debug)]
 struct HeldPoint {
-    /// Index of the pair among the near pairs.
+    /// Index of the pair of pieces in the list of near pairs.
     near: usize,
-    /// Index of the point among those of its pair.
+    /// Index of the point in [`Rigid::points`](super::rigid::Rigid) of its pair.
     index: usize,
     law: ImpactLaw,
-    /// Relative velocity across the normal at the start of the step, along the axes of the point, m/s.
+    /// Tangential components of the relative velocity at the start of the step, along the axes of the point,
+    /// m/s.
     slip: [f64; 2],
     /// Normal velocity at the end of the last trial step, m/s.
     separation: f64,
 }
 
-/// Impulse problem of a step for the pieces that rest on each other.
+/// Impulse problem from which the forces between resting pieces during one step are computed.
 pub(in crate::simulation) struct Hold {
     points: Vec<HeldPoint>,
     problem: ImpulseProblem,
     /// Impulses in the step, N s.
     impulses: Vec<f64>,
-    /// Length of the step, s, and time in which a gap or an overlap is corrected, s.
+    /// Length of the step, and time in which a gap or an overlap is corrected, s.
     times: [f64; 2],
     /// True before the first correction.
     is_first: bool,
 }
 
 impl Contacts {
-    /// Returns true if pieces rest on each other.
+    /// Returns true if any pieces with an impact law rest on each other.
     pub(in crate::simulation) fn has_resting(&self) -> bool {
         self.has_impact_laws() && self.near.iter().any(|&number| self.list[number].is_resting())
     }
 
-    /// Returns the problem for the forces in a step of length `h`, s, that starts at `state`; overlaps are
-    /// corrected in the time `correction`, s. Requires the kinematics of `state`, relative to W, in the trees.
+    /// Returns the problem for the forces in a step of length `h`, s, that starts at `state`; gaps and overlaps
+    /// are corrected within the time `correction`, s. Requires the kinematics of `state`, relative to W, in the
+    /// trees.
     pub(in crate::simulation) fn hold<S: Real>(
         &mut self,
         [h, correction]: [f64; 2],
@@ -87,9 +89,9 @@ impl Contacts {
         Hold { points, problem, impulses, times: [h, correction], is_first: true }
     }
 
-    /// Corrects the forces by the velocities at `state`, the end of a trial step with the present forces.
-    /// Returns the largest change of a velocity that the correction causes, m/s. Requires the kinematics of
-    /// `state`, relative to W, in the trees.
+    /// Corrects the forces according to the velocities at `state`, which is the end of a trial step with the
+    /// present forces. Returns the largest change of a velocity that the correction causes, m/s. Requires the
+    /// kinematics of `state`, relative to W, in the trees.
     ///
     /// # Errors
     /// [`ContactError::Painleve`] if a sliding point needs a force, but friction would push its pieces into
@@ -144,8 +146,9 @@ impl Contacts {
         Ok(change)
     }
 
-    /// Ends the hold of the step that starts at `t`, s: pieces without a force that separate faster than the
-    /// rest speed are apart from now on. Returns true if there are such pieces.
+    /// Finishes the computation of the forces for the step that starts at `t`, s. Pieces without a force that
+    /// separate faster than [`ImpactLaw::REST_SPEED`] no longer rest on each other. Returns true if there are
+    /// such pieces.
     pub(in crate::simulation) fn end_hold(&mut self, t: f64, hold: &Hold) -> bool {
         let mut has_separated = false;
         let points = hold.points.iter().zip(hold.impulses.chunks_exact(3)).collect::<Vec<_>>();
@@ -168,8 +171,9 @@ impl Contacts {
 }
 
 impl Hold {
-    /// Returns the largest coefficient of friction with which a sliding point has a force, if the point needs
-    /// a force and its coefficient is larger. `reached` are the velocities at the end of a trial step.
+    /// Returns the largest coefficient of friction for which a force exists at a sliding point, if the point
+    /// needs a force and its own coefficient is not smaller; otherwise `None`. `reached` has the velocities at
+    /// the end of a trial step, m/s.
     fn painleve(&self, number: usize, reached: &[f64]) -> Option<f64> {
         let (HeldPoint { law, slip, .. }, n, row) = (&self.points[number], reached.len(), 3 * number);
         let speed = slip[0].hypot(slip[1]);
@@ -186,8 +190,9 @@ impl Hold {
 }
 
 impl Touching {
-    /// Finds the points at which the pieces rest on each other at the start of a step. The points keep the
-    /// forces of the last step if their number has not changed. Pieces of which no point touches are apart.
+    /// Finds the points at which the pieces rest on each other at the start of a step. If the number of points
+    /// has not changed, they keep the forces of the last step. If no point touches, the pieces no longer rest
+    /// on each other.
     pub(super) fn find_resting_points(&mut self, motions: &[SideMotion; 2]) -> Result<(), ContactError> {
         if !self.is_resting() {
             return Ok(());
@@ -223,7 +228,7 @@ impl Touching {
         Ok([proximity.normal.dot(relative), across[0], across[1]])
     }
 
-    /// Ends the rest of the pieces at the start of a step.
+    /// Marks the pieces, which have rested on each other, as separated at the start of a step.
     fn separate(&mut self) {
         if let Some(rigid) = &mut self.rigid {
             rigid.points = None;

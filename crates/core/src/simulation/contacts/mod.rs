@@ -78,7 +78,7 @@ pub(crate) struct Contacts {
     begun: Vec<ContactState>,
     /// Names of the declared contacts.
     pub(super) names: Vec<String>,
-    /// True for declared contacts with an impact law.
+    /// True for each declared contact with an impact law.
     rigid: Vec<bool>,
     steps: ContactSteps,
     /// Largest permitted energy error of the next step, J; infinite without contacts between faces or edges.

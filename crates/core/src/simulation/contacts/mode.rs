@@ -18,7 +18,7 @@ pub(super) enum Phase {
 }
 
 impl Phase {
-    /// Returns true if the bodies touch.
+    /// Returns true if the bodies overlap in this phase.
     pub(super) fn is_closed(self) -> bool {
         matches!(self, Self::Pressing | Self::Separating)
     }

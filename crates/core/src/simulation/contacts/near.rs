@@ -10,13 +10,14 @@ use crate::simulation::state::State;
 use crate::simulation::tree::Tree;
 use crate::spatial::Real;
 
-/// Discrete state of the contacts of a run.
+/// Discrete state of the contacts of a run, as stored in a checkpoint.
 pub(in crate::simulation) struct SavedContacts {
     /// Modes of all pairs of pieces.
     pub(in crate::simulation) modes: Vec<Mode>,
     /// Touches of the declared contacts.
     pub(in crate::simulation) touches: Vec<Touch>,
-    /// Points at which the pieces of each pair rest on each other; empty without impact laws.
+    /// Points at which the pieces of each pair rest on each other, `None` for pairs that do not; empty if no
+    /// contact has an impact law.
     pub(in crate::simulation) resting: Vec<Option<Vec<RestingPoint>>>,
 }
 
@@ -36,8 +37,7 @@ impl Contacts {
         all
     }
 
-    /// Returns the modes of all pairs, the touches of all contacts and, if there is an impact law, the points
-    /// at which the pieces of each pair rest on each other.
+    /// Returns the discrete state of the contacts for a checkpoint.
     pub(in crate::simulation) fn save(&self) -> SavedContacts {
         let mut modes: Vec<Mode> = self.list.iter().map(|touching| touching.mode).collect();
         for number in self.known_far() {
@@ -66,8 +66,8 @@ impl Contacts {
         self.begun_at = f64::NAN;
     }
 
-    /// Returns the number of pairs of which a checkpoint contains the resting points: all pairs, or none
-    /// without impact laws.
+    /// Returns the number of pairs whose resting points a checkpoint contains: that of all pairs, or 0 if no
+    /// contact has an impact law.
     pub(in crate::simulation) fn rigid_pairs(&self) -> usize {
         if self.has_impact_laws() { self.list.len() } else { 0 }
     }

@@ -1,12 +1,13 @@
-//! Normal forces of the contacts on one system, for its controllers.
+//! Normal forces of the contacts on one system, as input to its controllers, and the touching contacts for
+//! latches.
 
 use super::Contacts;
 use crate::control::NormalForce;
 
 impl Contacts {
-    /// Writes the normal forces on the system with index `system` in the group at the state for which
-    /// [`Self::begin`] determined the modes. `body` returns the index of the body of a frame (index) of the
-    /// system.
+    /// Writes the normal forces on the system with index `system` in the group to `out`. They are those at the
+    /// state for which [`Self::begin`] determined the modes. `body` maps the index of a frame of the system to
+    /// the index of its body.
     pub(in crate::simulation) fn normal_forces(
         &self,
         system: usize,

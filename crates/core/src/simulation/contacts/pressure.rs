@@ -5,7 +5,7 @@ use crate::contact::NormalLaw;
 use crate::geometry::{ContactPoint, Points, Proximity};
 use crate::spatial::{Force, Motion, Vec3};
 
-/// Sums over the normal forces at the points of a contact.
+/// Sums of the normal forces, and of their powers and energies, over the points of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pressure {
     /// Sum of the normal forces, N.
@@ -18,7 +18,8 @@ pub(super) struct Pressure {
     pub(super) elastic: f64,
 }
 
-/// Resultant of the normal forces at the points of a contact, and of the forces that change their weights.
+/// Resultant of the forces at the points of a contact: the normal forces and, for compliant contacts with
+/// several points, the forces due to changes of the weights of the points.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Resultant {
     pub(super) pressure: Pressure,
@@ -97,7 +98,7 @@ impl Resultant {
         }
     }
 
-    /// Returns the force at a single point `at`, m, with its depth, m.
+    /// Returns the resultant for a single point, given by its position, m, and its depth, m.
     fn at_point(
         law: &NormalLaw,
         (at, depth): (Vec3<f64>, f64),

@@ -1,4 +1,4 @@
-//! Responses of the trees to impulses at points of contact and at stops of joints.
+//! Changes of the velocities of the trees due to impulses at contact points and at joint stops.
 
 use crate::dynamics::{ClosedLoops, Data, constrained_recursion, frame_jacobian, frame_pose, positions};
 use crate::model::{BASE_NV, Model};
@@ -13,11 +13,12 @@ pub(super) struct ContactAt {
     pub(super) places: [(usize, usize); 2],
     /// Point in W, m.
     pub(super) at: Vec3<f64>,
-    /// Directions of the rows: the normal from the first side to the second, and two across it, in W.
+    /// Unit vectors in W along which the three rows are measured: the normal from the first side to the second,
+    /// and two tangents.
     pub(super) axes: [Vec3<f64>; 3],
 }
 
-/// Stop of a joint: indices of the tree and of the joint, and the sign of the rate that leaves the stop.
+/// Joint stop: indices of the tree and of the joint, and the sign of joint rates away from the stop.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StopAt {
     pub(super) tree: usize,
@@ -25,7 +26,7 @@ pub(super) struct StopAt {
     pub(super) away: f64,
 }
 
-/// Row of the Jacobian of one tree, `(nv,)`, and the change of velocity that a unit impulse in this row
+/// Row `J` of the Jacobian of one tree, `(nv,)`, and the change of velocity that a unit impulse in this row
 /// causes, `M⁻¹ Jᵀ`, `(nv,)`.
 struct Part {
     tree: usize,
@@ -35,11 +36,12 @@ struct Part {
 
 /// Responses to unit impulses in all rows of an impulse problem.
 pub(super) struct Responses {
-    /// Trees on which each row acts: two for a contact of two trees, otherwise one.
+    /// Parts of each row: one for each tree on which it acts, that is, two for a contact between two trees and
+    /// otherwise one.
     rows: Vec<Vec<Part>>,
 }
 
-/// One tree at a configuration.
+/// One tree at the configuration for which the responses are computed.
 struct At<'a> {
     model: &'a Model,
     q: Vec<f64>,
@@ -49,8 +51,9 @@ struct At<'a> {
 }
 
 impl Responses {
-    /// Computes the responses at the configurations in `states`: the rows of `points`, three for each, and
-    /// those of `stops`. The rates of the joints for which `locked` returns true do not change.
+    /// Computes the responses at the configurations in `states`. The rows are those of `points`, three for
+    /// each, followed by those of `stops`. `locked` returns, for a tree (index), an array that is true for the
+    /// joints whose rates do not change.
     pub(super) fn new<S: Real>(
         trees: &[Tree<'_, S>],
         states: &[TreeState<S>],
@@ -104,8 +107,8 @@ impl Responses {
         matrix
     }
 
-    /// Returns the change of velocity of each tree, `(nv,)`, that the impulses `p` cause; empty for trees on
-    /// which none of them acts.
+    /// Returns the change of velocity of each tree, `(nv,)`, that the impulses `p` cause. It is empty for trees
+    /// on which no impulse acts.
     pub(super) fn changes(&self, trees: usize, p: &[f64]) -> Vec<Vec<f64>> {
         let mut changes = vec![Vec::new(); trees];
         for (row, p) in self.rows.iter().zip(p) {
@@ -131,7 +134,8 @@ impl<'a> At<'a> {
         Self { model, q, data, loops: ClosedLoops::new(model, model.closures()), locked }
     }
 
-    /// Returns the rows of the Jacobian for the velocity of `frame` at a point, times `sign`.
+    /// Returns the Jacobian of the velocity of the material point of `frame` at `point`, times `sign`; one row
+    /// for each of the three axes of the point.
     fn jacobian(&self, frame: usize, point: &ContactAt, sign: f64) -> [Vec<f64>; 3] {
         let nv = self.model.nv();
         let mut twist = vec![0.0; 6 * nv];
@@ -148,7 +152,8 @@ impl<'a> At<'a> {
         })
     }
 
-    /// Returns the row `jacobian`, `(nv,)`, with its response under locked joints and closed loops.
+    /// Returns the row `jacobian`, `(nv,)`, together with its response, which respects the locked joints and
+    /// the closed loops.
     fn part(&mut self, tree: usize, jacobian: Vec<f64>) -> Part {
         let Self { model, data, loops, locked, .. } = self;
         let (at_rest, mut response) = (vec![0.0; model.nv()], vec![0.0; model.nv()]);

@@ -1,4 +1,4 @@
-//! Points at which pieces with an impact law touch.
+//! Search for the points at which pieces with an impact law touch.
 
 use super::responses::ContactAt;
 use super::rigid::axes_of;
@@ -8,14 +8,14 @@ use crate::contact::ContactError;
 use crate::geometry::ContactPoint;
 use crate::spatial::Vec3;
 
-/// Gap, relative to the smaller reach of the pieces, within which their points touch.
+/// Gap, relative to the smaller reach of the two pieces, up to which points of the pieces touch.
 const TOUCHING: f64 = 1e-9;
-/// The same for pieces that rest on each other, whose gap has errors of the order of the step; also the depth
-/// at which a step of such pieces ends, because other points of them touch.
+/// The same for pieces that rest on each other, whose gap includes integration errors; also the depth, relative
+/// to the smaller reach, at which a step of such pieces ends because other points have begun to touch.
 const RESTING: f64 = 1e-6;
-/// Distance, relative to the smaller reach, within which two points count as the same.
+/// Distance between two points, relative to the smaller reach, below which they count as the same point.
 const SAME: f64 = 0.1;
-/// Rounding errors of the distance within which points touch.
+/// Multiple of the rounding error of the distance that is added to the gap up to which points touch.
 const ROUNDINGS: f64 = 1e3;
 
 impl Touching {
@@ -24,21 +24,22 @@ impl Touching {
         self.rigid.as_ref().is_some_and(|rigid| rigid.points.is_some())
     }
 
-    /// Returns true if the pieces have rested on each other near a position, m, in the axes of the first side.
+    /// Returns true if the pieces rest on each other at a point near `position`, which is relative to the frame
+    /// of the first side, m.
     pub(super) fn rests_near(&self, position: Vec3<f64>) -> bool {
         let points = self.rigid.iter().flat_map(|rigid| &rigid.points).flatten();
         let limit = SAME * self.smaller_reach();
         points.into_iter().any(|point| (point.at - position).norm() < limit)
     }
 
-    /// Returns the gap within which points of the pieces touch, m.
+    /// Returns the largest gap, m, at which points of the pieces touch.
     pub(super) fn touching_gap(&self, motions: &[SideMotion; 2]) -> f64 {
         let relative = if self.is_resting() { RESTING } else { TOUCHING };
         relative * self.smaller_reach() + ROUNDINGS * self.rounding(motions)
     }
 
-    /// Returns the points of the pieces that touch, with their gaps, m: contact points and, if it is not
-    /// near any of these, the middle of the witness points.
+    /// Returns the points at which the pieces touch, each with its gap, m. These are the contact points of the
+    /// shapes and, unless it is near one of them, the midpoint of the witness points.
     pub(super) fn rigid_points(
         &self,
         motions: &[SideMotion; 2],
@@ -62,8 +63,9 @@ impl Touching {
         Ok(found)
     }
 
-    /// Returns the margin, m, of pieces with an impact law at this depth, m: to their touch-down while they
-    /// are apart, and to the overlap of other points while they rest on each other.
+    /// Returns the margin, m, of pieces with an impact law at the depth `depth`, m: their distance while they
+    /// are apart, and the distance from the depth at which other points begin to touch while they rest on each
+    /// other.
     pub(super) fn rigid_margin(&self, depth: f64) -> f64 {
         if self.is_resting() { RESTING * self.smaller_reach() - depth } else { -depth }
     }

@@ -1,5 +1,5 @@
-//! State of a pair of pieces with an impact law: the points at which the pieces rest on each other, with the
-//! forces that keep them from overlapping.
+//! State of a pair of pieces with an impact law: the points at which the pieces rest on each other, and the
+//! forces that prevent an overlap.
 
 use super::pressure::{Pressure, Resultant};
 use super::side::SideMotion;
@@ -21,7 +21,7 @@ pub(super) struct Rigid {
 pub(in crate::simulation) struct RestingPoint {
     /// Position relative to the origin of the frame of the first side, m.
     pub(super) at: Vec3<f64>,
-    /// Normal from the first side to the second, and two directions across it.
+    /// Unit vectors: the normal from the first side to the second, and two tangents.
     pub(super) axes: [Vec3<f64>; 3],
     /// Components of the force on the second side along the axes, N; constant during a step.
     pub(super) force: [f64; 3],
@@ -36,8 +36,8 @@ impl RestingPoint {
         n * self.force[0] + s * self.force[1] + t * self.force[2]
     }
 
-    /// Returns the position in W, m, of the present contact point, one of `found`, that is closest to this
-    /// point. `a` is the motion of the first side.
+    /// Returns the position, in W, m, of the contact point in `found` that is closest to this resting point, or
+    /// of the resting point itself if `found` is empty. `a` is the motion of the first side.
     pub(super) fn present(&self, found: &[ContactPoint], a: &SideMotion) -> Vec3<f64> {
         let moved = a.frame.to_common(self.at);
         let place = |own: &ContactPoint| (own.point_a + own.point_b) * 0.5;
@@ -48,8 +48,8 @@ impl RestingPoint {
 }
 
 impl Rigid {
-    /// Returns the resultant of the forces at which the pieces rest on each other; `None` without forces. Each
-    /// force acts at the present contact point, one of `found`, that is closest to its point.
+    /// Returns the resultant of the forces between pieces that rest on each other; `None` if no point exerts a
+    /// normal force. Each force acts at the contact point in `found` that is closest to its resting point.
     pub(super) fn resultant(&self, found: &[ContactPoint], [a, b]: &[SideMotion; 2]) -> Option<Resultant> {
         let points = self.points.as_ref()?;
         let force: f64 = points.iter().map(|point| point.force[0]).sum();
@@ -72,7 +72,7 @@ impl Rigid {
     }
 }
 
-/// Returns `normal` and two unit vectors across it.
+/// Returns three orthonormal vectors: `normal`, which must have unit length, and two tangents.
 pub(super) fn axes_of(normal: Vec3<f64>) -> [Vec3<f64>; 3] {
     let other = if normal.x.abs() < 0.7 { Vec3::new(1.0, 0.0, 0.0) } else { Vec3::new(0.0, 1.0, 0.0) };
     let across = normal.cross(other);

@@ -10,11 +10,13 @@ use crate::simulation::tree::Tree;
 use crate::spatial::Real;
 
 impl Contacts {
-    /// Initializes the states of the contacts: the work of pieces that overlap at the start is the elastic
-    /// energy at their depth. `names` are those of the systems, for errors.
+    /// Initializes the states of the contacts. For pieces that overlap at the start, the work of the normal
+    /// force is initialized with the elastic energy at their depth. `names` has the names of the systems for
+    /// error messages.
     ///
     /// # Errors
-    /// [`ContactError::Overlap`] if pieces overlap and their contact does not permit it.
+    /// [`ContactError::Overlap`] if pieces overlap although their contact does not permit it;
+    /// [`ContactError::Geometry`] if a distance cannot be computed.
     pub(in crate::simulation) fn start<S: Real>(
         &self,
         names: &[String],

@@ -32,8 +32,9 @@ struct Rates {
 }
 
 impl Rates {
-    /// Computes the frequencies `√(k' W)` and the decay rates `c' W`, with the tangent stiffness `k'` and the
-    /// tangent damping `c'` at the largest depth, `depth`, m, and the reciprocal effective mass `W`.
+    /// Computes the frequencies `√(k' W)` and the decay rates `c' W`, 1/s, from the reciprocal effective mass
+    /// `W` in `mode`, and the tangent stiffness `k'` and the tangent damping `c'` at the largest depth `depth`,
+    /// m.
     fn of(law: &ContactLaw, mode: &Mode, depth: f64) -> Self {
         let [normal, tangential, turning] = mode.mobility;
         // slipping bristles have a constant length and do not oscillate
@@ -68,8 +69,8 @@ impl Rates {
 }
 
 impl Touching {
-    /// Returns the largest depth of the present motion, m; the present depth before the effective mass is
-    /// known.
+    /// Returns the largest depth, m, that the present motion will reach, or the present depth as long as the
+    /// effective mass is unknown.
     pub(super) fn largest_depth(&self, loading: &Loading) -> f64 {
         match (&self.law, self.mode.mobility[0]) {
             (Some(law), mobility) if mobility > 0.0 => {

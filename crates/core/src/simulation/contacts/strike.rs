@@ -1,5 +1,5 @@
-//! Rigid impacts: one impulse problem for all points of a group that touch at an instant, and for the stops
-//! of joints.
+//! Rigid impacts: one impulse problem for all points of a group that touch at an instant, and for all joint
+//! stops that joints have reached.
 
 use super::Contacts;
 use super::responses::{ContactAt, Responses, StopAt};
@@ -13,22 +13,22 @@ use crate::spatial::{Real, Vec3};
 /// Point at which pieces with an impact law touch.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TouchedPoint {
-    /// Index of the pair among the near pairs, and among all pairs.
+    /// Indices of the pair of pieces in the list of near pairs, and in the list of all pairs.
     pub(super) near: usize,
     pub(super) number: usize,
     pub(super) place: ContactAt,
     pub(super) law: ImpactLaw,
-    /// True if the pieces have rested on each other at this point, which then has no restitution.
+    /// True if the pieces already rest on each other at this point, which then has no restitution.
     pub(super) is_known: bool,
-    /// Velocity of the second side relative to the first along the axes of the point, m/s; positive along the
-    /// normal while they separate.
+    /// Velocity of the second side relative to the first, along the axes of the point, m/s; the normal
+    /// component is positive while the sides separate.
     pub(super) velocity: [f64; 3],
 }
 
-/// Whether pieces with an impact law touch at an instant.
+/// Changes of the contacts with an impact law at an instant.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::simulation) struct Touched {
-    /// True if pieces approach each other, or a joint moves into its stop while pieces touch.
+    /// True if touching pieces approach each other, or if a joint moves into its stop while pieces touch.
     pub(in crate::simulation) has_impact: bool,
     /// True if pieces begin to rest on each other.
     pub(in crate::simulation) is_new: bool,
@@ -40,8 +40,8 @@ impl Contacts {
         self.rigid.contains(&true)
     }
 
-    /// Determines whether pieces with an impact law touch at `state`. Requires the kinematics of `state`,
-    /// relative to W, in the trees.
+    /// Determines whether pieces with an impact law strike each other, or begin to rest on each other, at
+    /// `state`. Requires the kinematics of `state`, relative to W, in the trees.
     pub(in crate::simulation) fn touched<S: Real>(
         &mut self,
         trees: &[Tree<'_, S>],
@@ -89,8 +89,9 @@ impl Contacts {
     }
 
     /// Applies the impulses of all impacts at `t`, s, and determines which pieces rest on each other
-    /// afterwards. Without restitution if `is_endless` is true. Touches are recorded unless `t` is `None`.
-    /// Requires the kinematics of `state`, relative to W, in the trees, and updates them.
+    /// afterwards. If `t` is `None`, only the impulses are applied, and no touches are recorded. If
+    /// `is_endless` is true, the impacts have no restitution. Requires the kinematics of `state`, relative to
+    /// W, in the trees, and updates them.
     pub(in crate::simulation) fn strike<S: Real>(
         &mut self,
         t: Option<f64>,
@@ -118,8 +119,8 @@ impl Contacts {
         Ok(())
     }
 
-    /// Solves for the impulses at `points` and at the stops of joints, and applies them. Replaces the
-    /// velocities of the points by those after the impact.
+    /// Solves for the impulses at `points` and at joint stops, and applies them. Replaces the velocities of the
+    /// points by those after the impact.
     fn apply_impulses<S: Real>(
         &self,
         trees: &mut [Tree<'_, S>],
@@ -228,7 +229,8 @@ impl Contacts {
         }
     }
 
-    /// Determines which pieces rest on each other: those with a point that does not separate.
+    /// Marks the pieces with a point that does not separate as resting on each other, and all other pieces in
+    /// `points` as apart.
     fn rest(&mut self, points: &[TouchedPoint]) {
         for group in points.chunk_by(|a, b| a.number == b.number) {
             let slowest = group.iter().fold(f64::INFINITY, |least, point| least.min(point.velocity[0]));
@@ -244,13 +246,13 @@ impl Contacts {
     }
 }
 
-/// Returns the impulse on the second side, W axes, N s, with the components `p` along the axes of the point.
+/// Returns the impulse on the second side, N s, in W axes, from its components `p` along the axes of the point.
 fn impulse_of(point: &TouchedPoint, p: &[f64]) -> Vec3<f64> {
     let [n, s, t] = point.place.axes;
     n * p[0] + s * p[1] + t * p[2]
 }
 
-/// Returns the error for impulses that do not converge, at points of the contacts with these names.
+/// Returns the error for impulses that do not converge. `names` has the name of the contact of each point.
 pub(super) fn unsolved<'a>(unsolved: Unsolved, names: impl Iterator<Item = &'a str>) -> ContactError {
     let mut names: Vec<String> = names.map(|name| format!("'{name}'")).collect();
     let points = names.len();

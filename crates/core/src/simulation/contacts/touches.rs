@@ -208,7 +208,7 @@ impl Sample {
         systems: [0; 2],
     };
 
-    /// Returns the sample of pieces with an impact law that touch at `point`, in W, m.
+    /// Returns the sample of a contact of which one pair of pieces touches at `point`, in W, m.
     pub(super) fn at(point: Vec3<f64>, systems: [usize; 2]) -> Self {
         Self { pieces: 1, gap: 0.0, point, systems, ..Self::FAR }
     }
@@ -218,7 +218,7 @@ impl Sample {
         self.pieces > 0 && self.depth > LEAST_DEPTH
     }
 
-    /// Removes a pair of pieces that no longer touch.
+    /// Reduces the number of touching pairs by one.
     pub(super) fn remove_piece(&mut self) {
         self.pieces = self.pieces.saturating_sub(1);
     }

@@ -18,7 +18,7 @@ pub(super) struct Touching {
     /// Name of the contact.
     pub(super) name: String,
     pub(super) sides: [Side; 2],
-    /// Law of the compliant forces; `None` without such forces.
+    /// Law of the compliant forces; `None` if the contact exerts none.
     pub(super) law: Option<ContactLaw>,
     /// State of pieces with an impact law; `None` for other pieces.
     pub(super) rigid: Option<Rigid>,
@@ -27,12 +27,12 @@ pub(super) struct Touching {
     /// True if the forces at several points are the gradient of their elastic energy.
     pub(super) is_conservative: bool,
     pub(super) mode: Mode,
-    /// Distance by which the pieces may approach each other, m, before the gap must be computed again: the gap
-    /// computed last, less a margin and the distances that the pieces may have travelled since.
+    /// Distance, m, by which the pieces may approach each other before the gap must be computed again: the gap
+    /// that was computed last, less a margin and less the distance that the pieces may have travelled since.
     pub(super) clearance: f64,
     /// True if a connection of an external engine holds both links.
     pub(super) is_held: bool,
-    /// Largest depth of the motion at the start of the step, m.
+    /// Largest depth, m, that the motion at the start of the step will reach.
     pub(super) deepest: f64,
     /// Result of the last evaluation; `None` while the pieces are far apart.
     pub(super) last: Option<Loading>,
@@ -82,7 +82,8 @@ impl Touching {
         Ok(self.loading(phase, &self.geometry(phase, motions)?, motions, state))
     }
 
-    /// Returns the distance of the pieces and, in phases in which they touch or with an impact law, their contact points.
+    /// Computes the distance of the pieces and their contact points. The contact points are the witness points
+    /// while pieces without an impact law do not touch.
     #[inline]
     pub(super) fn geometry(
         &self,
@@ -100,8 +101,8 @@ impl Touching {
         Ok((proximity, points))
     }
 
-    /// Returns the forces in `phase` for pieces with this distance and these contact points, which must be those
-    /// of [`Touching::geometry`] in this phase if the pieces touch in it.
+    /// Computes the forces in `phase` from the distance and the contact points of the pieces. If the pieces
+    /// touch in this phase, [`Touching::geometry`] must have computed the contact points for it.
     pub(super) fn loading(
         &self,
         phase: Phase,

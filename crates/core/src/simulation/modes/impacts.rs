@@ -32,8 +32,8 @@ impl<S: Real> Tree<'_, S> {
         }
     }
 
-    /// Returns the joints that are at a stop and do not leave it, apart from joints with prescribed motion and
-    /// joints that brakes hold, and the sign of the rate with which each would leave.
+    /// Returns the joints (indices) that are at a stop and do not move away from it, each with the sign of
+    /// rates away from the stop. Joints with prescribed motion and joints that brakes hold are omitted.
     pub(in crate::simulation) fn stops_reached(&self, state: &TreeState<S>) -> Vec<(usize, f64)> {
         let Self { model, modes, .. } = self;
         let joints = 0..if modes.is_active() { model.joint_count() } else { 0 };
@@ -52,7 +52,8 @@ impl<S: Real> Tree<'_, S> {
         self.modes.restitution[j]
     }
 
-    /// Adds the energy `lost`, J, in an impact of joint `j` on its stop to the dissipated energies.
+    /// Adds the energy `lost`, J, that an impact of joint `j` on its stop dissipates to the dissipated energies
+    /// in `state`.
     pub(in crate::simulation) fn add_stop_loss(&self, j: usize, lost: f64, state: &mut TreeState<S>) {
         state.dissipated += S::of(lost);
         if let Some(share) = self.shares.iter().position(|joints| joints.contains(&j)) {

@@ -171,8 +171,8 @@ impl JointModes {
         (0..self.locked.len()).filter(|&j| self.brakes.holds(j))
     }
 
-    /// Returns, for each joint, whether its rate does not change in impacts: its motion is prescribed, or a
-    /// brake holds it.
+    /// Returns an array, `(n,)`, that is true for the joints whose rates do not change in impacts, because
+    /// their motion is prescribed or a brake holds them.
     pub(in crate::simulation) fn kept_in_impacts(&self) -> Vec<bool> {
         (0..self.locked.len()).map(|j| self.is_given(j) || self.is_held(j)).collect()
     }
@@ -237,9 +237,9 @@ impl JointModes {
         self.any_locked.then_some(&self.locked[..])
     }
 
-    /// Writes an array to `kept` that is true for the joints that a projection onto closed loops must not
-    /// move, `(n,)`: locked joints, and joints at rest that friction, a brake or a stop can hold. The rate of
-    /// a joint that has come to rest must remain exactly zero, because a rounding error of the rate would be
+    /// Writes an array, `(n,)`, to `kept` that is true for the joints that a projection onto closed loops must
+    /// not move: locked joints, and joints at rest that friction, a brake or a stop can hold. The rate of a
+    /// joint that has come to rest must remain exactly zero, because a rounding error of the rate would be
     /// treated as motion. The array is empty if there are no such joints.
     pub(in crate::simulation) fn find_kept_at_rest<S: Real>(&self, q: &[S], v: &[S], kept: &mut Vec<bool>) {
         let is_kept = |j: usize| self.locked[j] || self.is_at_rest(j, q, v);

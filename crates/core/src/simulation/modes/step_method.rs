@@ -24,14 +24,15 @@ const SHORTEST: f64 = 1e-4;
 /// Bound on the rounding error of the energy balance, relative to the sum of the magnitudes of the kinetic
 /// energies and of the work.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
-/// Length of a step, relative to a regular step, up to which bodies that rest on each other keep their
-/// forces, because rounding errors of the velocities, divided by the length, would dominate them.
+/// Largest length of a step, relative to a regular step, in which bodies that rest on each other keep their
+/// previous forces. In such a short step, the forces would be dominated by the rounding errors of the
+/// velocities divided by the length of the step.
 const SHORTEST_HOLD: f64 = 1e-9;
-/// Time in which a gap or an overlap of bodies that rest on each other is corrected, in steps.
+/// Time in which a gap or an overlap of bodies that rest on each other is corrected, in units of the step.
 const CORRECTION: f64 = 4.0;
-/// Largest number of trial steps for the forces of bodies that rest on each other.
+/// Largest number of trial steps with which the forces between bodies that rest on each other are determined.
 const MOST_TRIALS: usize = 8;
-/// Change of a velocity, m/s, by a correction of these forces below which they are accepted.
+/// Largest change of a velocity, m/s, by the last correction of these forces for which the trial steps end.
 const HELD: f64 = 1e-12;
 /// Resolution with which the instant of a mode change is located, as a fraction of the step.
 const RESOLUTION: f64 = 1e-14;
@@ -69,10 +70,10 @@ impl<S: Real> StepMethod<S> {
         (self.idle_steps, self.has_jumped) = (0, false);
     }
 
-    /// Applies the impacts of bodies with an impact law, and those of joints that move into their stops, at
-    /// `state` and the time `t`, s; `None` for a copy of the state, whose touches are not recorded. Requires
-    /// the kinematics of `state`, with projected base twists, in `equations`, which afterwards contain the
-    /// kinematics after the impacts. The loads must then be computed again.
+    /// Applies the impacts between bodies with an impact law, and those of joints that move into their stops,
+    /// to `state` at the time `t`, s. `t` is `None` for a copy of the state, whose touches are not recorded.
+    /// Requires the kinematics of `state`, with projected base twists, in `equations`, which afterwards contain
+    /// the kinematics after the impacts. The loads must then be computed again.
     pub(crate) fn resolve_impacts(
         &self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -89,10 +90,11 @@ impl<S: Real> StepMethod<S> {
         Ok(())
     }
 
-    /// Computes the forces of bodies that rest on each other under an impact law, for a step over `interval`,
-    /// s, from `state`: forces with which the velocities at the end of the step satisfy the law. They are
-    /// found by repeated trial steps. Returns true if bodies have separated. Requires projected base twists
-    /// in `state`, and its kinematics, loads and joint modes in `equations`, and updates them.
+    /// Computes the forces between bodies with an impact law that rest on each other, for a step over
+    /// `interval`, s, that starts at `state`. Repeated trial steps determine the forces with which the
+    /// velocities at the end of the step satisfy the law. Returns true if bodies have separated. Requires
+    /// projected base twists in `state`, and its kinematics, loads and joint modes in `equations`; computes all
+    /// of these again.
     pub(crate) fn hold_contacts(
         &mut self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
