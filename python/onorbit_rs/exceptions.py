@@ -33,7 +33,7 @@ class                       built-in               fields: cause
 ``OutputInUseError``        ``BlockingIOError``    ``path, pid, command, since``: another process writes to it
 ``OutputNotEmptyError``     ``FileExistsError``    ``path``: folder has files, or file exists; see ``force``
 ``OutputNotWritableError``  ``PermissionError``    ``path``: the folder is not writable
-``ScenarioError``           ``ValueError``         ``file, path, line``: an invalid scenario
+``ScenarioError``           ``ValueError``         ``file, path, line, errors``: an invalid scenario
 ``QuantityError``           ``ValueError``         ``text, expected``: ``"51.6 def"`` is not an angle
 ``CampaignError``           ``RuntimeError``       ``reason``: a cluster that does not answer or is lost
 ``ViewerError``             ``RuntimeError``       ``reason``: the viewer does not start or cannot be shown

@@ -131,7 +131,8 @@ class Distribution(Part):
         """Return the value whose cumulative probability is ``u``, in SI.
 
         `x = a + u (b − a)` for a uniform distribution and `x = µ + σ Φ⁻¹(u)` for a normal one. With bounds
-        `a` and `b`, `u` is first mapped to `Φ(α) + u [Φ(β) − Φ(α)]`, where `α = (a − µ)/σ` and `β` alike.
+        `a` and `b`, `u` is first mapped to `Φ(α) + u [Φ(β) − Φ(α)]`, where `α = (a − µ)/σ` and
+        `β = (b − µ)/σ`.
         """
         if self.uniform is not None:
             first, last = map(float, self.uniform)

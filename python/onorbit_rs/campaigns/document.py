@@ -51,7 +51,7 @@ class Keep(Part):
 
 
 class Condition(Part):
-    """Condition on one value of a case: all given limits hold. It does not hold for a missing value."""
+    """Limits for one value of a case, all of which must hold; a missing value does not satisfy them."""
 
     synonyms: ClassVar = {
         "max": "at_most", "min": "at_least", "less_than": "below", "more_than": "above", "is": "equals",
@@ -70,7 +70,7 @@ class Condition(Part):
         return self
 
     def holds(self, value: Any) -> bool:
-        """Return True if the condition holds for a value; None is a missing value."""
+        """Return True if a value satisfies all limits; None is a missing value."""
         if value is None:
             return False
         if "equals" in self.model_fields_set and value != self.equals:

@@ -1,4 +1,4 @@
-"""Random numbers of a campaign, which depend on seed, case and path, but not on workers or their order."""
+"""Random numbers of a campaign: functions of seed, case and path, independent of the order of execution."""
 
 from __future__ import annotations
 

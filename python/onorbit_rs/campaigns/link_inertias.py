@@ -69,7 +69,7 @@ def _share(model: Model, body: Body, link: str) -> LinkValues:
 
     With the reference values `m₀ = 1 kg`, `c₀ = 0` and `I₀ = 1` of the link in place of `m`, `c` and `I`, the
     body changes its mass by `m₀ − m`, its first moment of mass by `R (m₀ c₀ − m c) + (m₀ − m) p` and its
-    second moment about the body's origin alike, where `R` and `p` are the pose of the link in the body.
+    second moment about the body's origin correspondingly. `R` and `p` are the pose of the link in the body.
     """
     poses = {frame.name: np.array(frame.pose) for frame in model.frames}
     pose = poses.get(link, np.eye(4))

@@ -153,7 +153,7 @@ def _client(address: str, workers: int) -> Iterator[Any]:
 
 
 class _Tasks:
-    """Tasks on the cluster, of which only as many are submitted as its threads need next."""
+    """Tasks on the cluster; only as many are submitted as the threads of the cluster need next."""
 
     def __init__(self, client: Any, plan: Plan, cases: Sequence[int], address: str) -> None:
         self._client, self._address = client, address
@@ -187,7 +187,7 @@ class _Tasks:
             future.add_done_callback(self._done.put)
 
     def _next(self) -> Any:
-        """Return the next task that has ended; raise CampaignError if the cluster is gone."""
+        """Return the next task that has ended; raise CampaignError if the connection is lost."""
         while True:
             try:
                 return self._done.get(timeout=1.0)
@@ -204,7 +204,7 @@ class _Tasks:
             raise self._gone()
 
     def _results(self, future: Any, cases: list[int]) -> list[Outcome]:
-        """Return the outcomes of a task; empty if its worker died and its cases run again."""
+        """Return the outcomes of a task, or an empty list if its worker died and its cases are run again."""
         module = distributed()
         try:
             found, seconds = self._result(future)

@@ -69,7 +69,7 @@ class Board:
             return [self._waiting.popleft() for _ in range(min(size, len(self._waiting)))]
 
     def give_back(self, cases: Sequence[int], *, during_case: bool = True) -> bool:
-        """Take back the cases of a worker that died; return False if too many died during the first of them.
+        """Take back the cases of a worker that died; return False if the first case is not retried.
 
         Raises
         ------
@@ -145,7 +145,7 @@ class _Pool:
             thread.join()
 
     def _work(self, executor: Executor) -> None:
-        """Run cases until the pool stops; wait if no case is left, since another worker may return some."""
+        """Run cases until the pool stops; if no case waits, wait for cases of workers that die."""
         try:
             while not self._is_stopped.is_set():
                 cases = self._board.take()

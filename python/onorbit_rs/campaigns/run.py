@@ -78,8 +78,10 @@ def campaign(
     OnOrbitError
         Before any case runs: for an invalid campaign or scenario (``ScenarioError``), a column of ``keep`` or
         ``success`` that does not exist (``InputError``), a folder that is not empty, not writable or in use
-        (``OutputFolderError``), or a missing package (``InputError``). Errors of single cases are not raised;
-        they are in the column ``error``.
+        (``OutputFolderError``), or SciPy or Dask if required but not installed (``InputError``). Errors of
+        single cases are not raised; they are in the column ``error``.
+    InputError
+        If pyarrow, which the table requires, is not installed.
     CampaignError
         If the cluster does not answer, or the connection to it is lost. The cases on the disk are kept.
     OutputFolderError
@@ -143,7 +145,7 @@ def _table(columns: dict[str, list[Any]], plan: Plan, conditions: dict[str, Cond
 
 @contextmanager
 def _keeping(folder: CampaignFolder, cases: int) -> Iterator[None]:
-    """Write the remaining outcomes at the end of the block; add the number of kept cases to errors."""
+    """Write the remaining outcomes at the end of the block; add the number of kept cases to an error."""
     try:
         try:
             yield
@@ -186,7 +188,7 @@ def campaign_case(
     force : bool
         Replace the files of an earlier run.
     quiet : bool
-        Show no progress bar.
+        Show no progress.
 
     Returns
     -------

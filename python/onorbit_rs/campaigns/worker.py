@@ -34,7 +34,7 @@ def main() -> None:
 
 
 def _read(stream: BinaryIO, requests: queue.SimpleQueue[list[int]]) -> None:
-    """Read requests until the stream is closed; then end the process, also during a case."""
+    """Read requests until the stream is closed; then end the process, even during a case."""
     while True:
         try:
             requests.put(receive(stream))

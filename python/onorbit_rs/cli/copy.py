@@ -27,7 +27,7 @@ def copy(
     """Copy a bundled scenario or campaign to a file, for editing.
 
     A Python file that the scenario uses is copied beside it. The copy of a campaign refers to its scenario by
-    name; copy the scenario too, and name its file, to edit both.
+    name; to edit both, copy the scenario as well, and refer to its file.
     """
     from onorbit_rs.common.files import replacing
 

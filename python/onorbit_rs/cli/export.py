@@ -36,8 +36,8 @@ def export(
 ) -> None:
     """Write a run as a table, an ephemeris or a bag.
 
-    Tables have one column per number. The topics of bags are those of onorbit ros2; ROS is not required: pip
-    install 'onorbit-rs[ros2]'.
+    Tables have one column per number. Bags have the topics of onorbit ros2; they require pip install
+    'onorbit-rs[ros2]', but no installation of ROS.
     """
     from onorbit_rs.cli.console import print_json
     from onorbit_rs.common.progress import parts_bar

@@ -12,6 +12,7 @@ def plain(shown: Any) -> str:
     """Return a call such as ``Circle(radius=0.2)``, or the class with its attributes, as ``<Trace: …>``.
 
     The second form is for objects whose pickle does not contain the arguments of their constructor.
+
     Long arguments are replaced by their shape or shortened.
     """
     name = type(shown).__name__

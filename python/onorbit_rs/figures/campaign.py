@@ -58,7 +58,15 @@ class Series(NamedTuple):
 
 
 def result_distributions(results: Sequence[Series], is_success: Bools) -> Figure:
-    """Draw one histogram per result; cases without success are stacked on those with success."""
+    """Draw one histogram per result; cases without success are stacked on those with success.
+
+    Parameters
+    ----------
+    results : sequence of Series
+        Values of the results, (n,) each.
+    is_success : (n,) array of bool
+        Whether each case is a success.
+    """
     figure, panels = _grid(len(results))
     scaled = [result.with_prefix() for result in results]
     for number, (axes, result) in enumerate(zip(panels, scaled, strict=True)):
@@ -77,7 +85,15 @@ def result_distributions(results: Sequence[Series], is_success: Bools) -> Figure
 
 
 def success_history(fractions: Floats, low: Floats, high: Floats) -> Figure:
-    """Draw the fraction of successes, (n,), after each case, with its confidence bounds."""
+    """Draw the fraction of successes after each case, with its confidence bounds.
+
+    Parameters
+    ----------
+    fractions : (n,) array
+        Fraction of successes among the cases up to each case, 0 to 1.
+    low, high : (n,) arrays
+        Confidence bounds of the success rate, 0 to 1.
+    """
     figure = new_figure(PAGE, 2.1)
     axes = figure.subplots()
     cases = np.arange(1, len(fractions) + 1)
@@ -91,7 +107,17 @@ def success_history(fractions: Floats, low: Floats, high: Floats) -> Figure:
 def correlation_map(
     correlations: Floats, values: Sequence[str], results: Sequence[str], threshold: float
 ) -> Figure:
-    """Draw rank correlations (m, n) of m values and n results; those below ``threshold`` are grey."""
+    """Draw a map of rank correlations; those with a magnitude below ``threshold`` are grey.
+
+    Parameters
+    ----------
+    correlations : (m, n) array
+        Rank correlations of m dispersed values (rows) and n results; NaN if undefined.
+    values, results : sequences of str
+        Labels of the rows and of the columns.
+    threshold : float
+        Smallest significant magnitude.
+    """
     figure = new_figure(PAGE, 1.6 + 0.2 * len(values))
     axes = figure.subplots()
     image = axes.imshow(correlations, cmap="RdBu_r", vmin=-1.0, vmax=1.0, aspect="auto")
@@ -112,7 +138,15 @@ def correlation_map(
 
 
 def strongest_pairs(pairs: Sequence[tuple[Series, Series]], is_success: Bools) -> Figure:
-    """Draw results over dispersed values, one panel per pair; cases without success are orange."""
+    """Draw results over dispersed values, one panel per pair; cases without success are orange.
+
+    Parameters
+    ----------
+    pairs : sequence of (Series, Series)
+        A dispersed value and a result, (n,) each.
+    is_success : (n,) array of bool
+        Whether each case is a success.
+    """
     figure, panels = _grid(len(pairs))
     scaled = [(value, result.with_prefix()) for value, result in pairs]
     for axes, (value, result) in zip(panels, scaled, strict=True):

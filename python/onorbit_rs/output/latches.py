@@ -21,7 +21,7 @@ def latch_results(trace: WorldTrace, built: BuiltWorld) -> list[Summary]:
     ``time_s`` is the time of the capture, or None if the latch was not met. ``nearest_m`` and ``nearest_rad``
     are the distance and the angle between the frames at ``nearest_s``, when their distance in the rows before
     the capture was smallest. ``parted_s`` is the last time before the capture at which all contacts between
-    both systems had ended, or None; ``parted_speed_m_s`` is the speed of the center of mass of the captured
+    both systems had ended, or None; ``parted_speed_m_s`` is the speed of the centre of mass of the captured
     system relative to that of the other system in the first row after that time, and ``parted_spin_rad_s``
     the angular rate of its base in W.
     """

@@ -129,8 +129,8 @@ def end(helper: subprocess.Popen[bytes]) -> None:
 def _serve(helper: subprocess.Popen[bytes], albums: Sequence[Album], queue: _Queue) -> None:
     """Send the albums and then numbers of figures to a helper, and store the figures that it returns.
 
-    A helper that fails draws no further figures; the remaining processes draw its figure, and raise the error
-    if it has one.
+    A helper that fails draws no further figures. Another process draws its figure, so that an error of the
+    figure itself is raised in this process.
     """
     assert helper.stdin is not None and helper.stdout is not None
     number = None

@@ -53,7 +53,7 @@ class Camera:
 
     @classmethod
     def around(cls, points: Floats, direction: Floats, up: Floats, size: tuple[int, int]) -> Camera:
-        """Return a camera that lies in a direction from points (k, 3), m, and sees all of them."""
+        """Return a camera that looks from a direction at points (k, 3), m, and sees all of them."""
         center = (points.min(axis=0) + points.max(axis=0)) / 2.0
         view = cls.looking(center + direction, center, up, size)
         x, y, z = ((points - center) @ view.axes.T).T

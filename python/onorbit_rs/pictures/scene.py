@@ -89,7 +89,7 @@ class Scene:
 
     @property
     def place_eci(self) -> Floats:
-        """Position (3,) of the scene's origin relative to the Earth's centre, in inertial axes, m."""
+        """Position (3,) of the scene's origin relative to the centre of the planet, in inertial axes, m."""
         place: Floats = np.asarray(self.members[0].trace.position_eci)[self._row(self.members[0])]
         return place
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def scene_of_run(saved: SavedRun, summary: dict[str, Any], at_s: float) -> Scene:
-    """Return the scene of a run at a time.
+    """Return the scene of a run at the time ``at_s``, s.
 
     Raises
     ------

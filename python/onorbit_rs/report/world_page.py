@@ -121,7 +121,7 @@ def _latches(latches: Sequence[dict[str, Any]]) -> str:
     about = (
         "The distance and the angle are those between the frames. The systems parted when all contacts "
         "between them had ended, for the last time before the capture. The relative speed is that of their "
-        "centers of mass, the angular rate that of the captured system."
+        "centres of mass, the angular rate that of the captured system."
     )
     return _table("Latches", about, _LATCH_HEADS, map(_latch_cells, latches))
 

@@ -196,7 +196,7 @@ def _contacts(scenario: WorldScenario) -> Iterator[_core.Contact]:
 
 @contextmanager
 def _located_event(scenario: WorldScenario) -> Iterator[None]:
-    """Locate errors of the world at the event named in the error, otherwise at ``events`` or ``systems``."""
+    """Add the location of the event that an error of the world names, otherwise ``events`` or ``systems``."""
     names = [event.name for event in scenario.events]
     at: Location = ("events",) if names else ("systems",)
     try:
@@ -213,7 +213,7 @@ def _located_event(scenario: WorldScenario) -> Iterator[None]:
 
 @contextmanager
 def _located_contact(scenario: WorldScenario) -> Iterator[None]:
-    """Locate errors that name a contact at its links."""
+    """Add the location of the links of a contact to errors that name the contact."""
     names = [contact.label for contact in scenario.contacts]
     try:
         yield
@@ -226,7 +226,7 @@ def _located_contact(scenario: WorldScenario) -> Iterator[None]:
 
 @contextmanager
 def _located_control(scenario: WorldScenario) -> Iterator[None]:
-    """Locate errors that name a control at this control."""
+    """Add the location of a control to errors that name it."""
     places: dict[str | None, Location] = {
         control.name: ("systems", name, "controllers", index)
         for name, system in scenario.systems.items()

@@ -69,7 +69,7 @@ def check_size(built: Built | BuiltWorld, folder: Path | None) -> None:
     Raises
     ------
     InputError
-        If they do not fit; the message has a value of ``record_every`` for which they do.
+        If they do not fit; the message has a value of ``record_every`` with which they fit.
     """
     size = estimated_bytes(built)
     if size <= FITTING:
@@ -90,7 +90,7 @@ def check_size(built: Built | BuiltWorld, folder: Path | None) -> None:
 
 
 def _numbers_per_row(built: Built) -> int:
-    """Return the number of numbers in a row of one system."""
+    """Return how many numbers a row of one system contains."""
     names, scenario, joints = list(_ALWAYS), built.scenario, len(built.model.joints)
     if scenario.tracked_tool is not None:
         names += _WITH_TOOL

@@ -28,7 +28,7 @@ def write_oem(run: RecordedRun, file: Path, system: str | None = None) -> None:
     Raises
     ------
     InputError
-        If the run has no orbit around the Earth or no epoch, or its system is missing or unknown.
+        If the run has no orbit around the Earth or no epoch, or ``system`` is not one of its systems.
     OutputFolderError
         If the file cannot be written.
     """

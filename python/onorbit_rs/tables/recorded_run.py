@@ -159,7 +159,7 @@ class RecordedRun:
 
     @cached_property
     def _models(self) -> dict[str, Model]:
-        """Robots by system, or under an empty name; empty if they cannot be read any more."""
+        """Robots by system, or under an empty name; empty if they can no longer be read."""
         scenario = self._saved.scenario()
         alone = getattr(scenario, "scenarios", None) or {"": scenario}
         try:

@@ -41,7 +41,7 @@ def centers() -> tuple[Floats, Floats]:
 
 @cache
 def smooth_land() -> Floats:
-    """Return the fraction of land (360, 720) in a cell and the eight cells around it."""
+    """Return the mean of the land in each cell and the eight cells around it, (360, 720), 0 to 1."""
     cells = np.pad(
         np.pad(land().astype(np.float64), ((1, 1), (0, 0)), mode="edge"), ((0, 0), (1, 1)), mode="wrap"
     )

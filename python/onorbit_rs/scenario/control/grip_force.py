@@ -1,4 +1,4 @@
-"""Grippers that close to a force."""
+"""Control of grippers that close to a given force."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from onorbit_rs.scenario.part import Part
 
 
 class GripForceController(Law):
-    """Fingers of a gripper that close until they touch, and then to a given force.
+    """Control law that closes the fingers of a gripper until they touch, and then to a given force.
 
     The fingers are moved by the joints of the group, or by joints that mimic them. The force of the grip is
     the mean normal force of the fingers, from the contacts of the scenario, which must include each finger.
@@ -35,7 +35,7 @@ class GripForceController(Law):
     integral: Annotated[Rate, NotNegative] = 5.0
     """Gain of the integral of the force error, 1/s."""
     stiffness: JointNumber = 0.0
-    """Stiffness against motions of independent joints together with the object, N m/rad or N/m."""
+    """Stiffness that keeps independent fingers from moving together with the object, N m/rad or N/m."""
     effort_limit: JointEffort | None = None
     """Largest effort, N m or N. Default: the limits in the robot's file."""
 
@@ -71,7 +71,7 @@ class ForceGoal(Part):
 
 
 class GripForceControl(GripForceController, Control):
-    """Fingers of a gripper, moved by the joints of a group, that close to a given force."""
+    """Control of a group of joints that closes the fingers of a gripper to a given force."""
 
     goal: ForceGoal | None = None
     """Goal; the summary of the run contains its result."""

@@ -1,4 +1,4 @@
-"""Rigid impacts and contacts that last: closed forms, energy, and Painlevé's case."""
+"""Rigid impacts and lasting contacts: closed forms, energy, and Painlevé's case."""
 
 from __future__ import annotations
 
@@ -37,7 +37,11 @@ def _on_floor(thing: oo.System, law: oo.ImpactLaw, environment: tuple[oo.BodyWre
 
 
 def _sphere(share: float, restitution: float) -> tuple[float, float, float]:
-    """Return the speed along the floor, the surface speed of the spin and the speed of separation, m/s."""
+    """Return the speeds, m/s, of a sphere after an impact: along the floor, of its surface, and upwards.
+
+    ``share`` is the speed along the floor before the impact, as a fraction of the largest one for which the
+    sphere sticks.
+    """
     along = share * 3.5 * MU * (1.0 + restitution) * DOWN
     ball = at("ball", solid_sphere(), [0.0, 0.0, RADIUS + 0.01], [along, 0.0, -DOWN, 0.0, 0.0, 0.0])
     trace = _run(_on_floor(ball, LAW(restitution, MU)), 0.1)["ball"]
@@ -84,7 +88,7 @@ def cradle() -> list[float]:
 
 
 def landing() -> list[float]:
-    """Return the errors of a box that lands flat on four corners: of its speed and spin, and of the loss."""
+    """Return the errors of velocity, m/s and rad/s, and lost energy, J, of a box that lands on a face."""
     shape = '<box size="{} {} {}"/>'.format(*EDGES)
     errors = []
     for e in RESTITUTIONS:
@@ -113,8 +117,8 @@ def _fall(restitution: float, turn: Array, velocity: Array) -> oo.WorldTrace:
 def falls() -> list[float]:
     """Return the largest errors of boxes that fall on a plate, corner by corner, with friction.
 
-    The energy created by an impact, the error of the energy balance, both relative to the energy at the
-    start, and the errors of linear and angular momentum, relative to the impulse and its moment.
+    They are the energy created by an impact and the error of the energy balance, both relative to the energy
+    at the start, and the changes of linear and angular momentum, both divided by the impulse (1 and m).
     """
     rng = np.random.default_rng(3)
     errors = []
@@ -152,8 +156,10 @@ def _rod(normal: oo.ImpactLaw | oo.HuntCrossley, friction: oo.Friction | None = 
 
 
 def painleve() -> list[float]:
-    """Return the error of the coefficient of friction from which the sliding rod has no force, and that of
-    the energy balance with a compliant contact, relative to the energy.
+    """Return the errors of the largest friction coefficient of a sliding rod, and of its energy balance.
+
+    Above this coefficient, the rigid rod has no contact force. The energy balance is that of a compliant
+    contact, relative to the energy.
     """
     try:
         _rod(LAW(0.0, 1.4))
@@ -171,7 +177,7 @@ def painleve() -> list[float]:
 def rest() -> list[float]:
     """Return the errors of a ball that bounces to rest under a constant force of 1 N.
 
-    The gap, m, and the speed, m/s, at the end, the force, N, and the energy lost, J.
+    They are those of the gap, m, the speed, m/s, and the force, N, at the end, and of the energy lost, J.
     """
     ball = at("ball", solid_sphere(), [0.0, 0.0, RADIUS + HEIGHT])
     world = _on_floor(ball, LAW(0.5, MU), (oo.BodyWrench("ball/body", force=[0.0, 0.0, -1.0]),))

@@ -26,7 +26,7 @@ def force_of(trace: oo.WorldTrace, names: tuple[str, ...] = ("left", "right")) -
 
 
 def closing() -> list[float]:
-    """Return the error of the closing rate, `v = r d/(d + 2 b)` with the damping `b` of each jaw."""
+    """Return the relative error of the closing rate, `v = r d/(d + 2 b)` with the damping `b` of each jaw."""
     trace = run(world([grip()], opening=0.11), 1.0)
     damping = grasp_worlds.DAMPING
     expected = grasp_worlds.CLOSING * damping / (damping + 2.0 * JOINT_DAMPING)
@@ -34,7 +34,7 @@ def closing() -> list[float]:
 
 
 def steady() -> list[float]:
-    """Return the error of the force, N, without a disturbance, and with a force on one finger."""
+    """Return the errors of the grip force, N, without a disturbance and with a force on one finger."""
     errors = []
     for push in (0.0, PUSH):
         load = oo.BodyWrench("hand/left_finger", force=[-push, 0.0, 0.0])
@@ -44,7 +44,7 @@ def steady() -> list[float]:
 
 
 def pulled(fraction: float) -> tuple[float, float]:
-    """Return the speed of the bar in the hand at the end of a pull along the bar, m/s, and its rate, m/s².
+    """Return speed, m/s, and acceleration, m/s², of the bar in the hand at the end of a pull along the bar.
 
     The arm has no motor, so that the hand, of mass `m`, follows the bar, of mass `M`. The friction that holds
     both together is `P m/(M + m)` for the pull `P`; ``fraction`` is its ratio to that of both pads.
@@ -61,16 +61,17 @@ def pulled(fraction: float) -> tuple[float, float]:
 
 
 def slip() -> list[float]:
-    """Return the speed under a pull that the pads hold, and the error of that under one that they do not.
+    """Return the speed, m/s, under a pull that the pads hold, and an error of the slip under a stronger pull.
 
-    Slipping, the relative acceleration is `(c − 1) f (1/M + 1/m)` with the friction `f` and the fraction `c`.
+    It is the relative error of the acceleration of the bar in the hand, `(c − 1) f (1/M + 1/m)` with the
+    friction `f` of the pads and the load `c` of the contact as a fraction of it.
     """
     acceleration = (SLIPS - 1.0) * 2.0 * grasp_worlds.MU * FORCE * (1.0 / BAR_MASS + 1.0 / SLIDER)
     return [abs(pulled(HOLDS)[0]), abs(pulled(SLIPS)[1] / acceleration - 1.0)]
 
 
 def creep() -> list[float]:
-    """Return the net speed, m/s, of a held and loaded bar in the hand while the arm moves forth and back."""
+    """Return the net speed, m/s, of a held and loaded bar in the hand while the arm moves back and forth."""
     lever = float(grasp_worlds.start()[1][2])
     loads = [
         oo.BodyWrench("bar/body", force=[0.0, LOAD, 0.0], start=1.2),
@@ -84,7 +85,7 @@ def creep() -> list[float]:
 
 
 def levers() -> list[float]:
-    """Return the error of the grip force of three revolute fingers, N, and the relative one of their torques.
+    """Return the error of the grip force, N, and the relative error of the torques of three revolute fingers.
 
     At rest, the torque of a finger is `N aᵀ (r × n)` with the normal force `N`, the axis `a` of its joint,
     and the point `r` and the normal `n` of its contact relative to the joint.
@@ -109,7 +110,11 @@ def momentum_of(trace: oo.WorldTrace) -> np.ndarray:
 
 
 def whole() -> list[float]:
-    """Return the errors of momentum and energy through grasp, arm motion, latch, seating and release."""
+    """Return the errors of momentum and energy through grasp, arm motion, latch, seating and release.
+
+    The changes of linear and angular momentum are divided by the sum of the impulses; the error of the energy
+    is relative to the work.
+    """
     trace = grasp_worlds.operation()
     momentum = momentum_of(trace)
     impulse = sum(

@@ -64,12 +64,12 @@ def hand() -> oo.Model:
 
 @cache
 def bar() -> oo.Model:
-    """Return the bar."""
+    """Return the model of the bar."""
     return oo.Model.from_urdf_string(_BAR)
 
 
 def start(opening: float = 0.06) -> tuple[np.ndarray, np.ndarray]:
-    """Return the configuration of the hand with an opening, m, and the position of the frame ``grasp``."""
+    """Return the configuration of the hand with an opening, m, and the position of its frame ``grasp``, m."""
     q = hand().neutral()
     q[8:] = opening / 2
     return q, hand().frame_pose(q, "grasp")[:3, 3]
@@ -108,7 +108,7 @@ def world(
     events: Sequence[Any] = (),
     opening: float = 0.06,
 ) -> oo.World:
-    """Return the hand and the bar, whose place, m, is relative to the frame ``grasp``."""
+    """Return the world of the hand and the bar, whose position ``place``, m, is relative to ``grasp``."""
     q, origin = start(opening)
     systems = [
         oo.System("hand", hand(), q, np.zeros(hand().nv), controller=list(controls)),
@@ -136,9 +136,7 @@ def in_hand(trace: oo.WorldTrace) -> np.ndarray:
 
 
 def three_fingers(radius: float, integral: float) -> tuple[oo.WorldTrace, oo.Model]:
-    """Return the trace of three fingers that close to the force on a pin along the axis of the hand, and the
-    model of the hand.
-    """
+    """Return the trace and the model of a hand with three fingers that closes on a pin along its axis."""
     model = oo.robots.load("three_finger_hand")
     q = model.neutral()
     place = model.frame_pose(q, "grasp")[:3, 3]
@@ -160,8 +158,10 @@ def three_fingers(radius: float, integral: float) -> tuple[oo.WorldTrace, oo.Mod
 
 
 def operation() -> oo.WorldTrace:
-    """Return the trace of a whole capture: the bar drifts and turns slowly, and is grasped, moved by the arm,
-    latched, seated and released with a spring.
+    """Return the trace of a whole capture.
+
+    The bar drifts and turns slowly; it is grasped, moved by the arm, latched, seated and released with an
+    impulse.
     """
     touching = ["left", "right"]
     events = [

@@ -1,4 +1,4 @@
-"""Springs at joints of a free base: closed forms of linear, cubic, damped and rubbing oscillations."""
+"""Springs at joints of a free base: closed forms of oscillations, also cubic, damped and with friction."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ AMPLITUDE = 1.2
 REST = 0.4
 """Rest position of the spring, rad."""
 FRICTION = 2.0
-"""Coulomb friction of the rubbing wheel, N m."""
+"""Coulomb friction of the wheel that comes to rest, N m."""
 
 
 def wheel(**joint: Any) -> oo.Model:
-    """Return a base with a wheel about its z axis, through the centres of mass of both, and a spring."""
+    """Return a base with a wheel on a spring; the axis z of the wheel passes through both centres of mass."""
     builder = oo.ModelBuilder("craft", base="base", mass=20.0, inertia=np.diag([BASE, BASE, BASE]))
     builder.add_link(
         "wheel", parent="base", joint="spin", kind="continuous", axis=[0, 0, 1],
@@ -50,8 +50,8 @@ def released(model: oo.Model, deflection: float, duration: float, time_step: flo
 def flapping(offset: float, length: float, *, is_free: bool = True) -> tuple[oo.Model, float]:
     """Return a plate on a base with a spring, and the inertia of its small oscillations, kg m².
 
-    The joint is at the distance `a` (``offset``) from the centre of mass of the base, and that of the plate
-    at the distance `l` (``length``) beyond the joint. With the masses `M` and `m`, the moments of inertia `J`
+    The joint is at the distance `a` (``offset``) from the centre of mass of the base; the plate's centre of mass
+    is at the distance `l` (``length``) beyond the joint. With the masses `M` and `m`, the moments of inertia `J`
     and `j`, `μ = M m/(M + m)`, `A = J + μ a (a + l)` and `B = j + μ l (a + l)`, angular momentum zero gives
     the rates `-B q̇/(A + B)` of the base and `A q̇/(A + B)` of the plate, and so the inertia
     `[J B² + j A² + μ (l A - a B)²] / (A + B)²`. With an infinite inertia of the base (``is_free`` is False),
@@ -157,7 +157,7 @@ def damped() -> tuple[float, float]:
 
 
 def rubbing_end() -> tuple[float, float]:
-    """Return the deflection at which the rubbing wheel sticks, rad, and the time at which it does, s.
+    """Return the deflection, rad, at which the wheel with friction sticks, and the time, s, at which it does.
 
     In each half swing, of the duration `π/ω`, friction `f` reduces the amplitude by `2 f/k`. The wheel sticks
     at the first turning point at which the spring holds less than `f`.
