@@ -100,7 +100,7 @@ def test_a_case_that_kills_its_worker_fails_alone(tmp_path: Path, monkeypatch: p
     expected = ["failed" if crash else "complete" for crash in crashes]
     assert table["status"].to_pylist() == expected
     error = next(filter(None, table["error"].to_pylist()))
-    assert error == "the worker process ended by SIGKILL, 2 times during this case"
+    assert error == "the worker process was ended by SIGKILL, 2 times during this case"
 
 
 def test_an_error_of_a_controller_is_kept(tmp_path: Path) -> None:

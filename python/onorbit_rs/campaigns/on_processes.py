@@ -76,7 +76,7 @@ class _InProcess:
             self._process = None
         code = process.returncode
         with suppress(ValueError):
-            return f"the worker process ended by {signal.Signals(-code).name}"
+            return f"the worker process was ended by {signal.Signals(-code).name}"
         return f"the worker process ended with exit code {code}"
 
 

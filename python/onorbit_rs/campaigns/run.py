@@ -203,7 +203,7 @@ def campaign_case(
     """
     plan = plan_of(load_campaign(source, cases=cases))
     if isinstance(case, bool) or not isinstance(case, int):
-        raise DtypeError(f"case is {case!r}; it must be a whole number", name="case", got=case)
+        raise DtypeError(f"case is {case!r}; it must be a whole number, from 0", name="case", got=case)
     if not 0 <= case < plan.cases:
         raise InputError(
             f"case {case} does not exist; the campaign has the cases 0 to {plan.cases - 1}",

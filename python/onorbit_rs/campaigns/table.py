@@ -53,7 +53,8 @@ def check_conditions(
     for name in conditions:
         if name not in known and not name.startswith(accepted):
             raise InputError(
-                f"campaign.success: the results have no column {name!r}{did_you_mean(name, known)}",
+                f"campaign.success: the results have no column {name!r}"
+                f"{did_you_mean(name, known) or '; the columns are those of cases.parquet'}",
                 name=name, got=name, expected=nearest(name, known),
             )  # fmt: skip
 

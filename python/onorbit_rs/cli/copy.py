@@ -19,7 +19,7 @@ def copy(
         str, typer.Argument(metavar="NAME", help="A bundled name.", autocompletion=bundled_names)
     ],
     out: Annotated[
-        Path | None, typer.Option("--out", "-o", metavar="FILE", help="The copy; default: NAME.yaml.")
+        Path | None, typer.Option("--out", "-o", metavar="FILE", help="File of the copy; default: NAME.yaml.")
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace existing files.")] = False,
     quiet: QuietOption = False,

@@ -26,10 +26,11 @@ def show(
         float | None, typer.Option(metavar="SECONDS", help="Time of the picture; default: 0.")
     ] = None,
     size: Annotated[
-        str | None, typer.Option(metavar="WIDTHxHEIGHT", help="Pixels of the picture; default: 1920x1080.")
+        str | None,
+        typer.Option(metavar="WIDTHxHEIGHT", help="Size of the picture, pixels; default: 1920x1080."),
     ] = None,
     eye: Annotated[
-        str | None, typer.Option(metavar="X,Y,Z", help="Camera relative to the base, m, axes of L or W.")
+        str | None, typer.Option(metavar="X,Y,Z", help="Position of the camera relative to the base, m.")
     ] = None,
     look_at: Annotated[
         str | None,

@@ -1,7 +1,7 @@
 """Sends objects between this process and processes that it has started, as pickles.
 
-Reading a pickle can execute arbitrary code. These functions are therefore never used for files, only for pipes
-and connections between processes of the same user.
+Reading a pickle can execute arbitrary code. These functions are therefore used only for pipes and connections
+between processes of the same user, never for files.
 """
 
 from __future__ import annotations

@@ -143,7 +143,8 @@ def selected(lines: Sequence[Line], columns: Sequence[str]) -> list[Line]:
         if not fitting and columns:
             known = {head for line in lines for head in _heads(line.label.name)}
             raise InputError(
-                f"no column matches {column!r}{did_you_mean(column, sorted(known))}",
+                f"no column matches {column!r}"
+                f"{did_you_mean(column, sorted(known)) or '; names are, for example, tau or q/position'}",
                 name="columns", got=column, expected=sorted(known),
             )  # fmt: skip
         found |= {line.label.name: line for line in fitting}

@@ -20,7 +20,7 @@ def no_python(part: UserClass, file: str) -> OnOrbitError:
 def no_class(part: UserClass, source: str, classes: Iterable[str]) -> OnOrbitError:
     """Return the error for a file or module that does not define the class."""
     known = list(classes)
-    hint = did_you_mean(part.class_, known)
+    hint = did_you_mean(part.class_, known) or "; add it, or correct 'class'"
     message = f"{source} has no class {part.class_!r}{hint}"
     return part.error(message, name="class", got=part.class_, expected=known)
 

@@ -169,7 +169,8 @@ def painleve() -> list[float]:
         limit = np.nan
     trace = _rod(oo.HuntCrossley(1e6, 1.0, dissipation=1.0), oo.Friction(1.4))
     if not trace.contacts["tip"].largest_force[-1] > 1.0:
-        raise ValueError("the tip of the rod does not press on the floor")
+        force = float(trace.contacts["tip"].largest_force[-1])
+        raise ValueError(f"the largest force of the tip of the rod is {force:g} N; it must be above 1 N")
     balance = [row[1] for row in trace.certificate() if "energy_balance" in row[0] and row[1] is not None]
     return [abs(limit - 4.0 / 3.0), float(worst(balance))]
 

@@ -127,7 +127,7 @@ def whole() -> list[float]:
     assert energy is not None
     kinds = [event.kind for event in trace.events if event.kind in ("capture", "release")]
     if kinds != ["capture", "release"]:
-        raise ValueError(f"the events are {kinds}")
+        raise ValueError(f"the events are {kinds}; expected a capture, then a release")
     return [
         float(np.linalg.norm(momentum[:, :3] - momentum[0, :3], axis=1).max() / impulse),
         float(np.linalg.norm(momentum[:, 3:] - momentum[0, 3:], axis=1).max() / impulse),

@@ -50,10 +50,10 @@ def released(model: oo.Model, deflection: float, duration: float, time_step: flo
 def flapping(offset: float, length: float, *, is_free: bool = True) -> tuple[oo.Model, float]:
     """Return a plate on a base with a spring, and the inertia of its small oscillations, kg m².
 
-    The joint is at the distance `a` (``offset``) from the centre of mass of the base; the plate's centre of mass
-    is at the distance `l` (``length``) beyond the joint. With the masses `M` and `m`, the moments of inertia `J`
-    and `j`, `μ = M m/(M + m)`, `A = J + μ a (a + l)` and `B = j + μ l (a + l)`, angular momentum zero gives
-    the rates `-B q̇/(A + B)` of the base and `A q̇/(A + B)` of the plate, and so the inertia
+    The joint is at the distance `a` (``offset``) from the centre of mass of the base, and the centre of mass
+    of the plate at the distance `l` (``length``) beyond it. With the masses `M` and `m`, the moments of
+    inertia `J` and `j`, `μ = M m/(M + m)`, `A = J + μ a (a + l)` and `B = j + μ l (a + l)`, angular momentum
+    zero gives the rates `-B q̇/(A + B)` of the base and `A q̇/(A + B)` of the plate, and so the inertia
     `[J B² + j A² + μ (l A - a B)²] / (A + B)²`. With an infinite inertia of the base (``is_free`` is False),
     it is `j + m l²`.
     """
