@@ -121,8 +121,7 @@ class Contacts:
             data.efc_aref[rows.row] += gain @ missing
 
     def _slow_down(self, data: Any, rows: _Rows) -> bool:
-        """Apply the kinetic coefficient to contacts on the cone of static friction; return True if there are
-        any."""
+        """Apply the kinetic coefficient to contacts on the static friction cone; return True if any are."""
         found = False
         for number, point, row in zip(rows.number, rows.point, rows.row, strict=True):
             friction = self._touches[number].friction

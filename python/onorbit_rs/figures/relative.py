@@ -97,8 +97,9 @@ def goes_far(trace: Trace, model: Model) -> bool:
 
 
 def set_window(axes: Axes, points: Floats, across: int) -> None:
-    """Set the limits of a panel around the points (k, 3) in L: along track to the right, entry ``across``
-    upward. The scale is the same in both panels.
+    """Set the limits of a panel around the points (k, 3) in L.
+
+    The track is to the right, entry ``across`` upward; the scale is the same in both panels.
     """
     low, high = points.min(axis=0), points.max(axis=0)
     sides = high - low

@@ -1,5 +1,7 @@
-"""Style of the figures: sizes of a two-column paper, colours for colour-blind readers, units in every
-label, no global state, and no titles, because captions belong to the page.
+"""Style of the figures.
+
+The figures have the sizes of a two-column paper, colours for colour-blind readers, units in every label, and
+no titles, because captions belong to the page. No global state of matplotlib is changed.
 """
 
 from __future__ import annotations
@@ -176,8 +178,9 @@ def others_of(count: int) -> str:
 
 
 def thin(time: Floats, values: Floats) -> tuple[Floats, Floats]:
-    """Return the end points of a line and at most :data:`MOST_POINTS` extremes, from equal intervals; a line
-    with fewer points is returned whole.
+    """Return the end points of a line and at most :data:`MOST_POINTS` extremes, from equal intervals.
+
+    A line with fewer points is returned whole.
     """
     if len(time) <= MOST_POINTS:
         return time, values

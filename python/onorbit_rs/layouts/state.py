@@ -24,8 +24,9 @@ NORM_TOLERANCE = 1e-6
 
 
 def checked(name: str, value: ArrayLike, *shape: int) -> Floats:
-    """Return a finite array of this shape, or a batch of such arrays; raise DtypeError, ShapeError or
-    InputError otherwise.
+    """Return a finite array of this shape, or a batch of such arrays.
+
+    Raises DtypeError, ShapeError or InputError for any other value.
     """
     try:
         array = np.array(value, dtype=np.float64)
@@ -139,9 +140,7 @@ def names_in(joints: Any, attribute: str) -> bool:
 
 
 def no_floating_base(engine: str) -> InputError:
-    """Return the error for a model of another engine without a free first joint, or with several rates per
-    joint.
-    """
+    """Return the error for a model that has no free first joint, or joints with several rates."""
     return InputError(
         f"the first joint of the {engine} model must be a free joint (floating base), and every other joint "
         "must have one degree of freedom; give such a model, or the list of joint names",

@@ -162,8 +162,9 @@ def read_checkpoint(folder: Path, digest: str) -> SavedCheckpoint:
 
 
 def scenario_digest(scenario: dict[str, Any]) -> str:
-    """Return the SHA-256, in hexadecimal, of a resolved scenario and of every readable file that it names by
-    absolute path.
+    """Return the SHA-256, in hexadecimal, of a resolved scenario and the files to which it refers.
+
+    These are the readable files that it names by absolute path.
     """
     digest = hashlib.sha256(json.dumps(scenario, sort_keys=True, default=str).encode())
     for text in _texts(scenario):

@@ -32,8 +32,9 @@ _ROUNDING = 1e-9
 
 
 def joint_loads(trace: Trace, built: Built) -> Summary:
-    """Return the largest joint torque, N m, and force, N, of the run, and the largest joint rates at its end,
-    rad/s and m/s. Entries of a kind of joint that the robot lacks are omitted.
+    """Return the largest joint torque and force, N m and N, and the largest final joint rates, rad/s and m/s.
+
+    Entries of a kind of joint that the robot lacks are omitted.
     """
     tau, rates = np.abs(np.asarray(trace.tau)), np.abs(np.asarray(trace.v)[-1, JOINTS_V])
     loads: Summary = {}
@@ -102,8 +103,10 @@ def loads_exceeded(trace: Trace, model: Model) -> Summary:
 
 
 def joint_errors(key: str, errors: Floats, built: Built, wanted: list[str] | None = None) -> Summary:
-    """Return the largest errors as ``KEY_joint_error_max_rad`` of revolute and ``…_m`` of prismatic joints,
-    if there are any. ``errors``, (T, joints), are those of all joints or of those named ``wanted``, rad or m.
+    """Return the largest errors of revolute and of prismatic joints, if the robot has any.
+
+    The keys are ``KEY_joint_error_max_rad`` and ``…_m``. ``errors``, (T, joints), rad or m, are those of all
+    joints, or of those named ``wanted``.
     """
     prismatic = _are_prismatic(built, wanted)
     units = {"rad": ~prismatic, "m": prismatic}

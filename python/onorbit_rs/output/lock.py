@@ -120,8 +120,10 @@ class FolderLock:
 
 
 def owner_of(folder: Path) -> Owner | None:
-    """Return the running process that holds the lock of a folder; None if there is none or the lock file
-    cannot be opened. The process has number 0 if the lock file does not name it.
+    """Return the running process that holds the lock of a folder; None if there is none.
+
+    Returns None, too, if the lock file cannot be opened. The process has the number 0 if the lock file does
+    not name it.
     """
     try:
         with open_to_read(folder / LOCK) as stream:

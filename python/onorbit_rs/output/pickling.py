@@ -48,8 +48,9 @@ class PickledTrace(SavedTrace):
 
 
 def arrays_of(trace: Trace) -> dict[str, Any]:
-    """Return the columns of a trace by path, including those of every control, effect, contact and loop, but
-    without ``rereferenced``.
+    """Return the columns of a trace by path, without ``rereferenced``.
+
+    They include the columns of every control, effect, contact and loop.
     """
     arrays = {name: np.asarray(getattr(trace, name)) for name in trace.columns()}
     contacts = {name: contact.values for name, contact in trace.contacts.items()}

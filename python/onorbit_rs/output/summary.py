@@ -182,8 +182,10 @@ def run_numbers(trace: Trace | WorldTrace, scenario: Scenario | WorldScenario) -
 
 
 def _orbit(trace: Trace, scenario: Scenario, orbit: Orbit | None) -> Summary:
-    """Return the inertial axes, the source of the inertial velocity, the gravity mode, and the largest
-    residual acceleration of the reference; empty without an orbit.
+    """Return the entries of the summary about the orbit; empty without an orbit.
+
+    They are the inertial axes, the source of the inertial velocity, the gravity mode, and the largest
+    residual acceleration of the reference, m/s².
     """
     if orbit is None:
         return {}

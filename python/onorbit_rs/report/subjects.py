@@ -37,8 +37,9 @@ def subject_of_run(
 
 
 def figures_of(subject: Subject, system: str) -> list[OwnDrawing]:
-    """Return the figures of one robot, none if its trace has fewer than two rows; their names begin with
-    ``system`` if it is not empty.
+    """Return the figures of one robot; none if its trace has fewer than two rows.
+
+    Their names begin with ``system``, if it is not empty.
     """
     from onorbit_rs import figures
 
@@ -51,8 +52,9 @@ def figures_of(subject: Subject, system: str) -> list[OwnDrawing]:
 def world_figures(
     saved: SavedRun, scenario: WorldScenario, summary: dict[str, Any], remarks: list[str]
 ) -> list[OwnDrawing]:
-    """Return the figures of all systems together, then those of each system; none if they share fewer than
-    two rows.
+    """Return the figures of all systems together, then those of each system.
+
+    The list is empty if the systems share fewer than two rows.
     """
     from onorbit_rs import figures
 
@@ -86,8 +88,9 @@ def _robot(scenario: Scenario, summary: dict[str, Any], remarks: list[str], syst
 
 
 def _around(saved: SavedRun, scenario: Scenario, remarks: list[str]) -> tuple[Orbit | None, Earth | None]:
-    """Return the orbit and the Earth of a run; None for each that the scenario lacks or, with a remark, that
-    cannot be read.
+    """Return the orbit and the Earth of a run; each is None if the scenario has none.
+
+    One that cannot be read is None, too, and a remark is added.
     """
     orbit = earth = None
     with _remarked(remarks, "the orbit could not be read; figures that show it are omitted"):

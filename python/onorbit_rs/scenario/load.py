@@ -86,8 +86,9 @@ def _checked_changes(data: Any, file: Path | None, lines: Lines, changes: Change
 
 
 def check(data: Any, file: Path | None, lines: Lines) -> AnyScenario:
-    """Return a validated scenario from plain data, or raise ScenarioError; ``lines`` contains the line of
-    each entry.
+    """Return a validated scenario from plain data, or raise ScenarioError.
+
+    ``lines`` contains the line of each entry.
 
     Several ``systems`` give a :class:`WorldScenario`; a single system or robot gives a :class:`Scenario`.
     """

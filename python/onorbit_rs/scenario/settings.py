@@ -63,7 +63,11 @@ class IntegrationSettings(Part):
         return math.ceil(self.duration / self.time_step * (1.0 - 1e-9))
 
     def arguments(self) -> dict[str, Any]:
-        """Return the settings except ``duration``, as keyword arguments of :class:`onorbit_rs.Simulation`."""
+        """Return the settings as keyword arguments of :class:`onorbit_rs.Simulation`.
+
+        ``duration`` and the settings of the engine are omitted; ``rereference_beyond`` is an argument of
+        :class:`onorbit_rs.World`.
+        """
         values = self.model_dump(exclude_none=True, exclude={"duration"})
         if self.rereference_beyond == "never":
             values["rereference_beyond"] = math.inf

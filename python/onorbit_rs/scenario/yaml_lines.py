@@ -60,8 +60,9 @@ def read_yaml(path: Path) -> tuple[Any, Lines]:
 
 
 def parse_yaml(text: str, file: Path | None) -> tuple[Any, Lines]:
-    """Return the data of a YAML text and the line of each entry, or raise ScenarioError; ``file`` is the name
-    in messages.
+    """Return the data of a YAML text and the line of each entry, or raise ScenarioError.
+
+    ``file`` is the name in messages.
     """
     reader = _NodeReader(file)
     try:

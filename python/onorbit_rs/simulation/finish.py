@@ -40,6 +40,7 @@ def finished(
     pictures: Pictures = ALL,
 ) -> dict[str, Any]:
     """Return the summary of a completed run with its certificate; write the results to ``folder``, if given.
+
     ``tell`` receives the name of each stage of the work.
     """
     tell("certificate")
@@ -101,6 +102,7 @@ def _not_drawn(folder: OutputFolder) -> str:
 
 def keep_failed(error: Exception, built: Built | BuiltWorld, folder: OutputFolder | None) -> None:
     """Write the rows of a run that failed with an error other than divergence, and add a note to the error.
+
     Nothing happens without ``folder`` or without rows.
     """
     trace = getattr(error, "trace", None)
@@ -122,8 +124,9 @@ def keep_stopped(
     tell: Callable[[str], None],
     pictures: Pictures = ALL,
 ) -> None:
-    """Write the rows of a run that stopped early to ``folder``, if given; state the reason and the folder in
-    the message of ``stop``.
+    """Write the rows of a run that stopped early to ``folder``, if given.
+
+    The message of ``stop`` is extended by the reason and the folder.
     """
     if isinstance(stop, SimulationError):
         if isinstance(built, Built):

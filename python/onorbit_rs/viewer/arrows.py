@@ -72,8 +72,10 @@ class Arrows:
     _scales: dict[str, float] = field(default_factory=dict)
 
     def send(self, rows: TraceRows) -> None:
-        """Send momenta at the centre of mass, forces and moments of the closed loops and, if recorded,
-        forces and torques of every effect.
+        """Send the arrows at the centre of mass, of closed loops and of effects.
+
+        They are the momenta at the centre of mass, the forces and moments of the closed loops and, if recorded,
+        the forces and torques of every effect.
         """
         center = rows["center_of_mass"][:, None, :]
         for kind, vectors in self._momenta(rows):
@@ -130,8 +132,9 @@ class Arrows:
     def _send(
         self, rows: TraceRows, kind: _Kind, origins: Floats, vectors: Floats, *, at_surface: bool = True
     ) -> None:
-        """Send arrows (T, n, 3) at origins (T, n, 3), m, both in W; by default, the first arrow begins at the
-        surface of the base.
+        """Send arrows (T, n, 3) at origins (T, n, 3), m, both in W.
+
+        By default, the first arrow begins at the surface of the base.
         """
         path = kind.path
         to_surface = self._to_surface(rows, origins, vectors) if at_surface else np.zeros(vectors.shape)

@@ -155,8 +155,9 @@ def send_spacecraft(
 
 
 def path_around_planet(orbit: Orbit | None, points: int = 361) -> Floats | None:
-    """Return positions (k, 3), m, inertial axes, along one revolution of an orbit with a period, or along a
-    custom path; None for any other orbit, without a planet, or if the orbit decays in its first revolution.
+    """Return positions (k, 3), m, along one revolution of an orbit or along a custom path, in inertial axes.
+
+    Returns None for an orbit without a period or a planet, or that decays in its first revolution.
     """
     if orbit is None or orbit.mu is None:
         return None

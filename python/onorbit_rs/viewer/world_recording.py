@@ -199,8 +199,7 @@ def bodies_of(world: WorldRows) -> list[Body]:
 
 
 def _events_of(series: Series, setting: WorldSetting, events: Sequence[EventRecord]) -> list[EventRecord]:
-    """Return the events between the systems that a plot shows; for a plot of a contact, the touches of that
-    contact."""
+    """Return the events that a plot shows: those between its systems, or the touches of its contact."""
     systems = set(setting.names)
     for connection in setting.connections:
         if series.path.startswith(f"{SHARED}connections/{connection.name}/"):

@@ -57,8 +57,9 @@ class _Triangles:
     colors: Floats
 
     def clustered(self, edge: float) -> _Triangles:
-        """Return the mesh with the points in each cube of this edge merged, without collapsed and repeated
-        triangles.
+        """Return the mesh with the points in each cube of this edge merged.
+
+        Collapsed and repeated triangles are removed.
         """
         _, cluster = np.unique(_cubes(self.points, edge), return_inverse=True)
         faces = cluster[self.faces]

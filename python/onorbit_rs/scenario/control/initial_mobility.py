@@ -33,8 +33,9 @@ class InitialMobility:
         return len(joint_columns(law, self.model.joint_names))
 
     def of_joints(self, law: Any) -> Floats:
-        """Return `(Mmm - Mmb Mbb⁻¹ Mbm)⁻¹`, with the blocks of the mass matrix for the base `b` and the
-        joints `m` of a law; the other joints are fixed.
+        """Return `(Mmm - Mmb Mbb⁻¹ Mbm)⁻¹` for the joints `m` of a law; the other joints are fixed.
+
+        The blocks are those of the mass matrix; `b` is the base.
 
         The mobility is at least as large if the other joints are free.
         """
@@ -45,8 +46,9 @@ class InitialMobility:
         return np.asarray(np.linalg.inv(inertia), dtype=np.float64)
 
     def of_tool(self, law: Any) -> Floats:
-        """Return `Jg M*⁻¹ Jgᵀ`, (6, 6), the acceleration of a law's tool per unit wrench on the tool, with
-        the generalized Jacobian `Jg` and the reduced mass matrix `M*` of the law's joints.
+        """Return `Jg M*⁻¹ Jgᵀ`, (6, 6), the acceleration of a law's tool per unit wrench on the tool.
+
+        `Jg` is the generalized Jacobian of the tool, and `M*` the reduced mass matrix of the law's joints.
         """
         tool = tool_of(law, self.tool)
         assert tool is not None  # check_control rejects a task-space law without a tool

@@ -50,8 +50,9 @@ class BodyWrenchEffect(Part):
         return self.model_copy(update={"body": link}) if system == name else None
 
     def build(self, model: _core.Model | None, _folder: Path) -> _core.BodyWrench:
-        """Return the engine's effect object; raises ``FrameError`` if ``model``, unless it is None, has no
-        such body.
+        """Return the engine's effect object.
+
+        Raises FrameError if ``model`` is given and has no such body.
         """
         bodies = [self.body] if model is None else list(model.body_names)
         if self.body not in bodies:

@@ -151,8 +151,7 @@ class NumericalOrbit(ConicOrbit):
     def integrate(
         conic: _core.Orbit, effects: list[_core.Effect], earth: _core.Earth | None
     ) -> _core.Numerical:
-        """Return the orbit integrated from the state of a conic, in the gravity of the gravitational
-        ``effects``."""
+        """Return the orbit that starts at the state of a conic, integrated in the gravity of ``effects``."""
         gravity = [effect for effect in effects if isinstance(effect, (_core.GravityField, _core.ThirdBody))]
         return _core.Numerical.from_orbit(conic, environment=gravity, earth=earth)
 

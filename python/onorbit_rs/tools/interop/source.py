@@ -79,8 +79,9 @@ class Source:
             self.note(key, "no meaning", f"not a key of OnOrbitROS{hint}")
 
     def number(self, key: str, default: float | None = None) -> float:
-        """Return the value of ``key``, which may be arithmetic, or ``default`` if it is not given; raises a
-        ScenarioError for another value.
+        """Return the value of ``key``, which may be arithmetic, or ``default`` if it is not given.
+
+        Raises ScenarioError for any other value.
         """
         if default is not None and key not in self.data:
             return default

@@ -147,8 +147,9 @@ class OverTimeError(Exception):
 
 
 def _trace(plan: Plan, ends: float) -> Trace:
-    """Return the trace of a plan; raise ``OverTimeError`` if it would end after ``ends``, s, see
-    :func:`clock`.
+    """Return the trace of a plan.
+
+    Raises OverTimeError if it would end after ``ends``, s; see :func:`clock`.
     """
     built = build(Scenario(**yaml.safe_load(draft_text(plan, "trial"))))
     return built.simulation.run(plan.duration_s, progress=clock(ends))

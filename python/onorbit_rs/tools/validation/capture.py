@@ -53,8 +53,9 @@ def capture(first: Craft, second: Craft, **settings: Any) -> tuple[oo.EventRecor
 
 
 def momentum(craft: Craft, v: Array, point: Array) -> tuple[Array, Array]:
-    """Return the momentum (6,) about a point in W, N s and N m s, and the sums (2,) of the magnitudes of the
-    linear and angular momenta of the links.
+    """Return the momentum (6,) of links about a point in W, N s and N m s, and its scales (2,).
+
+    The scales are the sums of the magnitudes of the linear and angular momenta of the links.
     """
     total, scales = np.zeros(6), np.zeros(2)
     for body in craft.model.bodies:

@@ -105,9 +105,7 @@ def unequal() -> list[float]:
 
 
 def row() -> list[float]:
-    """Return the errors of the velocities of three equal balls after two elastic impacts, relative to the
-    initial speed.
-    """
+    """Return the relative errors of the velocities of three equal balls after two elastic impacts."""
     trace = balls(oo.HuntCrossley(HERTZ), (BALLS, BALLS, LAST), SPEED)
     return [abs(trace[name].v[-1, 0] / SPEED - end) for name, end in (("a", 0.0), ("b", 0.0), ("c", 1.0))]
 

@@ -40,8 +40,10 @@ def gmat_jgm3(degree: int, order: int, expected: Any) -> tuple[float]:
 
 
 def monte_j2() -> tuple[float]:
-    """Return the distance from MONTE's position, m, with the pole of J2000 and an assumed radius of the
-    Earth."""
+    """Return the distance from MONTE's position, m, with the pole of J2000.
+
+    The radius of the Earth is assumed.
+    """
     zonal = oo.GravityField.zonal(j=[-MONTE_C20 * np.sqrt(5.0)], mu=MONTE_MU, radius=RADIUS)
     reached = after_a_day(zonal, oo.Earth(rotation="about_z"), MONTE_MU)
     return (float(np.linalg.norm(reached - MONTE_J2)),)

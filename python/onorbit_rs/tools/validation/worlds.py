@@ -129,8 +129,9 @@ GAP, SPEED, HELD, REACH = 1.7, 0.3, 0.25, 0.5  # m, m/s, s, m
 
 
 def latch() -> tuple[float, float]:
-    """Return the errors of the time, s, at which a latch closes, `(d − r)/v + t_held`, and of the energy
-    lost, J.
+    """Return the errors of the time at which a latch closes, s, and of the energy lost, J.
+
+    The time is `(d − r)/v + t_held`.
 
     `d` is the initial distance, `v` the closing speed, `r` the latch's reach, `t_held` the time that it
     waits.
