@@ -74,8 +74,8 @@ class Arrows:
     def send(self, rows: TraceRows) -> None:
         """Send the arrows at the centre of mass, of closed loops and of effects.
 
-        They are the momenta at the centre of mass, the forces and moments of the closed loops and, if recorded,
-        the forces and torques of every effect.
+        They are the momenta at the centre of mass, the forces and moments of the closed loops and, if
+        recorded, the forces and torques of every effect.
         """
         center = rows["center_of_mass"][:, None, :]
         for kind, vectors in self._momenta(rows):
