@@ -99,7 +99,7 @@ class SystemFrames:
         return found
 
     def _shift(self, q: Floats) -> Floats:
-        """Return the displacement, m, of each child link that turns about an anchor, in axes of its parent."""
+        """Return the displacement, m, of each child link that turns about an anchor, in parent axes."""
         u, c = self._axis, np.where(self._turns[:, None], self._anchor, 0.0)
         across = np.cross(u, c)
         # c − exp(θ u) c = −sin θ u × c − (1 − cos θ) u × (u × c)
