@@ -146,7 +146,7 @@ def test_show_names_the_extra_and_refuses_what_it_cannot_show(
     for bad, kind in (({"width": 0}, oo.exceptions.InputError), ({"height": 2.5}, oo.exceptions.DtypeError)):
         with pytest.raises(kind, match=next(iter(bad))):
             oo.show(spheres, **bad)
-    with pytest.raises(oo.exceptions.DtypeError, match="cannot show WorldTrace"):
+    with pytest.raises(oo.exceptions.DtypeError, match="source is of type WorldTrace"):
         oo.show(spheres.trace)  # type: ignore[arg-type]
     monkeypatch.setattr(sys.modules["IPython"], "get_ipython", lambda: None)
     with pytest.raises(oo.exceptions.ViewerError, match="onorbit show DIR"):

@@ -306,14 +306,14 @@ def _model_html(model: Model) -> str | None:
 
 
 def _world_html(world: World) -> str | None:
-    """Return the systems of a world and what acts on them, for notebooks."""
+    """Return the systems of a world and what acts on them as HTML for notebooks."""
     from onorbit_rs.displays import or_plain, world_html
 
     return or_plain(world_html, world)
 
 
 def _simulation_html(simulation: Simulation) -> str | None:
-    """Return the systems and the settings of a simulation, for notebooks."""
+    """Return the systems and the settings of a simulation as HTML for notebooks."""
     from onorbit_rs.displays import or_plain, simulation_html
 
     return or_plain(simulation_html, simulation)

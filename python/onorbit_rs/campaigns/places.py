@@ -163,7 +163,7 @@ class Places:
         return {}
 
     def _of_part(self, place: Place, part: Part) -> dict[str, Place]:
-        """Return the fields of a part; those of joints and links have an entry for each of the robot."""
+        """Return the fields of a part; those of joints and links include all of the robot."""
         plain = part.model_dump(mode="json", by_alias=True)
         found = {}
         for key, name in _names(type(part)).items():

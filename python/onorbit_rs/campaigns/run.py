@@ -138,7 +138,7 @@ def _run(
 
 
 def _table(columns: dict[str, list[Any]], plan: Plan, conditions: dict[str, Condition]) -> pa.Table:
-    """Return the table, with what notebooks need to show it."""
+    """Return the table with the metadata that its display in notebooks requires."""
     show_tables()
     return described(table_of(columns), plan.name, plan.value_names, conditions)
 

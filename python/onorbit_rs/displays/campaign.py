@@ -1,7 +1,7 @@
 """HTML of the table of a campaign for notebooks: success, results, and the cases without success.
 
-Arrow tables have no display. The metadata of the table state which columns are dispersed values
-and what counts as success, also in ``cases.parquet``; the display is registered with IPython.
+Arrow tables have no HTML display, so one is registered with IPython. The metadata of a table, also in
+``cases.parquet``, state which columns are dispersed values and which conditions define success.
 """
 
 from __future__ import annotations
@@ -40,9 +40,9 @@ def described(table: pa.Table, name: str, values: list[str], success: dict[str, 
 
 
 def campaign_html(table: pa.Table) -> str | None:
-    """Return success with its bounds, the results that vary, and the cases without success.
+    """Return success with its bounds, the results that vary, and the cases without success as HTML.
 
-    A table that is not, or no longer, that of a campaign has no display: None.
+    Returns None for a table that is not, or no longer, that of a campaign.
     """
     about = json.loads((table.schema.metadata or {}).get(_KEY, b"null"))
     if about is None or not {"case", "status", "success", "error"} <= set(table.column_names):

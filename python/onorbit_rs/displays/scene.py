@@ -42,13 +42,15 @@ def show(
     NotFoundError
         If the folder does not exist, or contains no recording.
     InputError
-        If a size is not positive; ``DtypeError`` if it is not an integer, or the source is not a run.
+        If a size is not positive.
+    DtypeError
+        If a size is not an integer, or ``source`` is not a run.
     """
     for name, value in (("width", width), ("height", height)):
         _check_size(name, value)
     if not isinstance(source, Run | RecordedRun | str | os.PathLike):
         raise DtypeError(
-            f"cannot show {type(source).__name__}; expected a run, a recorded run or its folder",
+            f"source is of type {type(source).__name__}; give a run, a recorded run or its folder",
             name="source", got=type(source).__name__, expected="Run, RecordedRun, str or path",
         )  # fmt: skip
     from onorbit_rs.viewer.inline import check_notebook, display_recording

@@ -19,7 +19,7 @@ _MOST = 20
 
 
 def world_html(world: World) -> str:
-    """Return the systems with masses, kg, joints and controls; the orbit, effects, contacts and events."""
+    """Return systems with masses, kg, joints and controls, orbit, effects, contacts and events as HTML."""
     (systems,), settings = arguments_of(world)
     rows = []
     for system in systems[:_MOST]:
@@ -38,7 +38,7 @@ def world_html(world: World) -> str:
 
 
 def simulation_html(simulation: Simulation) -> str:
-    """Return the systems with masses, kg, and joints; the orbit, the integrator and the time step, s."""
+    """Return the systems with masses, kg, and joints, the orbit, integrator and time step, s, as HTML."""
     models: Mapping[str, Model] = simulation.models
     table = rows_html([_robot(name, model) for name, model in list(models.items())[:_MOST]], _ROBOT)
     step, every = simulation.time_step, simulation.record_every
@@ -80,7 +80,7 @@ def _contact(contact: Any) -> str:
 
 
 def _event(event: Any) -> str:
-    """Return what an event does, and when."""
+    """Return the class and the arguments of an event as text, and when it happens."""
     _, given = arguments_of(event)
     if given.get("at") is not None:
         when = f", at {digits(given['at'])} s"

@@ -10,7 +10,7 @@ INSTALL = "pip install 'onorbit-rs[notebooks]'"
 
 
 def check_notebook() -> None:
-    """Raise ViewerError if the viewer cannot be displayed here: no widget, or no notebook."""
+    """Raise ViewerError if rerun-notebook is not installed, or this is not a notebook."""
     try:
         import rerun_notebook  # noqa: F401
     except ImportError:
@@ -21,8 +21,8 @@ def check_notebook() -> None:
     ipython = sys.modules.get("IPython")
     if ipython is None or ipython.get_ipython() is None:
         raise ViewerError(
-            "oo.show displays the viewer in a notebook, and this is none; write the run to a folder, and "
-            "open it with: onorbit show DIR",
+            "oo.show displays the viewer only in a notebook; elsewhere, write the run to a folder and open it "
+            "with: onorbit show DIR",
             reason="no notebook",
         )
 
@@ -33,7 +33,7 @@ def display_recording(content: bytes, width: int | None, height: int) -> None:
     Parameters
     ----------
     content : bytes
-        The file; it is sent when the viewer in the browser is ready.
+        Content of the file; it is sent when the viewer in the browser is ready.
     width, height : int or None
         Size, pixels; the width None is that of the notebook.
     """
@@ -42,4 +42,4 @@ def display_recording(content: bytes, width: int | None, height: int) -> None:
 
     widget = rerun_notebook.Viewer(width="auto" if width is None else width, height=height)
     widget.send_rrd(content)
-    display(rerun_notebook.ErrorWidget(), widget)  # the former is empty unless the browser loads no viewer
+    display(rerun_notebook.ErrorWidget(), widget)  # the first one is empty if the browser loads the viewer
