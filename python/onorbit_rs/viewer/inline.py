@@ -21,8 +21,8 @@ def check_notebook() -> None:
     ipython = sys.modules.get("IPython")
     if ipython is None or ipython.get_ipython() is None:
         raise ViewerError(
-            "oo.show displays the viewer only in a notebook; elsewhere, write the run to a folder and open it "
-            "with: onorbit show DIR",
+            "oo.show displays the viewer only in a notebook; elsewhere, write the run to a folder, and open "
+            "it with: onorbit show DIR",
             reason="no notebook",
         )
 
