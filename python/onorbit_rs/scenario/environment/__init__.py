@@ -1,4 +1,7 @@
-"""Effects of the environment. A new effect is a class with its keys and ``build``, added to the union."""
+"""Effects of the environment of scenarios.
+
+To add an effect, write a class with its keys and ``build``, and add the class to the union.
+"""
 
 from __future__ import annotations
 

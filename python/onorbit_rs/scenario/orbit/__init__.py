@@ -1,4 +1,7 @@
-"""Reference orbits. A new kind of orbit is a file with a class, added to the union."""
+"""Reference orbits of scenarios.
+
+To add a kind of orbit, write its class in a new file, and add the class to the union.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""References that controllers track. A new kind of reference is a file with a class, added to the union."""
+"""References that controllers track.
+
+To add a kind of reference, write its class in a new file, and add the class to the union.
+"""
 
 from __future__ import annotations
 
