@@ -14,10 +14,20 @@ import onorbit_rs as oo
 from onorbit_rs.cli import main
 from onorbit_rs.pictures import Scene, draw_picture
 from onorbit_rs.pictures.camera import Camera
+from onorbit_rs.pictures.light import (
+    AMBIENT,
+    CHANNELS,
+    FROM_CAMERA,
+    FROM_SUN,
+    add_sunlight,
+    lit_colors,
+)
+from onorbit_rs.pictures.normals import corner_normals
 from onorbit_rs.pictures.raster import Canvas
 from onorbit_rs.pictures.scene import Member
 from onorbit_rs.pictures.sky import AIR_HEIGHT, SPACE, Sky
 from onorbit_rs.visuals.earth_shape import EARTH_RADIUS_KM
+from onorbit_rs.visuals.solids import box_faces, robot_polygons
 
 UP = np.array([0.0, 0.0, 1.0])
 BALL = """<robot name="ball"><link name="body"><inertial><mass value="1"/>
@@ -71,6 +81,69 @@ def test_a_ball_has_the_size_of_its_silhouette() -> None:
     assert image[0, 200] == pytest.approx(np.array([28, 31, 38]) / 255.0, abs=1e-6)  # no orbit: no stars
     apart = pixels(draw_picture(Scene([Member(model, trace)], 0.1), (400, 400), eye=2.0 * eye))
     assert (apart[..., 0] > apart[..., 2] + 0.1)[:300].sum() < 0.3 * is_red.sum()
+
+
+def quad(center: tuple[float, float, float], side: float) -> np.ndarray:
+    """Returns a square that is normal to z."""
+    corners = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]]
+    return np.array(center) + 0.5 * side * np.array(corners)
+
+
+def test_a_shadow_is_where_geometry_puts_it() -> None:
+    """A square of 1 m is 1 m above a plane; the Sun is inclined by 45 degrees, so the shadow is 1 m aside."""
+    faces = np.stack([quad((0.0, 0.0, 0.0), 6.0), quad((0.0, 0.0, 1.0), 1.0)])
+    sun = np.array([1.0, 0.0, 1.0]) / np.sqrt(2.0)
+    above = Camera.looking(np.array([0.0, 0.0, 20.0]), np.zeros(3), np.array([0.0, 1.0, 0.0]), (400, 400))
+
+    def drawn(shown: np.ndarray) -> Canvas:
+        canvas = Canvas(above, CHANNELS)
+        triangles = np.concatenate([shown[:, [0, 1, 2]], shown[:, [0, 2, 3]]])
+        lit = lit_colors(shown, np.ones((len(shown), 3)), above, sun)
+        canvas.add_triangles(triangles, np.concatenate([lit[:, [0, 1, 2]], lit[:, [0, 2, 3]]]))
+        add_sunlight(canvas, above, sun, triangles)
+        return canvas
+
+    plane, both = drawn(faces[:1]), drawn(faces)
+    brightest = float(plane.color[200, 200, 0])
+    assert brightest == pytest.approx(AMBIENT + FROM_CAMERA + FROM_SUN / np.sqrt(2.0), abs=5e-3)
+    on_plane = both.inverse_depth < 1.01 / 20.0
+    is_dark = on_plane & (both.inverse_depth > 0.0) & (both.color[..., 0] < brightest - 0.2)
+    rows, columns = np.nonzero(is_dark)
+    scale = above.focal / 20.0  # pixels per metre on the plane
+    hidden = 0.5 / 0.95 * scale  # the square hides this half-width of the plane
+    assert 200.0 - columns.min() == pytest.approx(1.5 * scale, abs=1.5)
+    assert 200.0 - columns.max() == pytest.approx(hidden, abs=1.5)
+    assert np.ptp(rows) + 1 == pytest.approx(scale, abs=2.0)
+    assert (
+        plane.color[on_plane & (plane.inverse_depth > 0.0), 0] > brightest - 0.01
+    ).all()  # no shadow on itself
+
+
+def test_round_bodies_are_smooth_and_edges_are_sharp() -> None:
+    model = oo.Model.from_urdf_string(BALL)
+    (faces, _), *_ = robot_polygons(model, model.neutral()[None], None, 72)
+    radial = faces / np.linalg.norm(faces, axis=-1, keepdims=True)
+    angles = np.arccos(np.abs(np.einsum("nki,nki->nk", corner_normals(faces), radial)).clip(0.0, 1.0))
+    # the normals of the faces are inclined to the radii at their corners by 4.3 degrees or more
+    assert np.degrees(angles.mean()) < 0.6 and np.degrees(angles.max()) < 2.5
+    box = box_faces(np.array([1.0, 2.0, 3.0]))
+    flat = np.cross(box[:, 2] - box[:, 0], box[:, 3] - box[:, 1])
+    flat /= np.linalg.norm(flat, axis=1, keepdims=True)
+    assert corner_normals(box) == pytest.approx(np.repeat(flat[:, None], 4, axis=1))
+    assert corner_normals(np.empty((0, 4, 3))).shape == (0, 4, 3)
+
+
+def test_the_sun_does_not_shine_through_the_earth() -> None:
+    radius = 1e3 * EARTH_RADIUS_KM
+    sun = np.array([1.0, 0.0, 0.0])
+    for place, is_dark in (
+        ([-1.05 * radius, 0.0, 0.0], True),
+        ([1.05 * radius, 0.0, 0.0], False),
+        ([-6.6 * radius, 0.9 * radius, 0.0], True),
+        ([-6.6 * radius, 1.1 * radius, 0.0], False),
+    ):
+        assert Sky(np.eye(3), np.array(place), None, sun).is_eclipsed() == is_dark
+    assert not Sky(np.eye(3), None, None, sun).is_eclipsed()
 
 
 def test_the_horizon_is_where_geometry_puts_it() -> None:

@@ -9,6 +9,7 @@ import numpy as np
 from PIL import Image
 
 from onorbit_rs.pictures.camera import Camera
+from onorbit_rs.pictures.light import CHANNELS, add_sunlight, lit_colors
 from onorbit_rs.pictures.raster import Canvas
 from onorbit_rs.pictures.sky import Sky
 from onorbit_rs.pictures.triad import add_triads
@@ -33,9 +34,8 @@ BACKGROUND = np.array([28, 31, 38]) / 255.0
 _FINER = 2
 """Number of samples per pixel in each direction."""
 
-_AMBIENT, _FROM_CAMERA, _FROM_SUN = 0.22, 0.40, 0.58
 _LIGHT = np.array([-0.45, 0.65, 0.6])
-"""Direction to the light in axes of the camera, if the position of the Sun is unknown."""
+"""Direction to the light in axes of the camera, if the Sun's position is unknown or the Earth hides it."""
 
 _PATHS = {"desired": (0.94, 0.94, 0.94), "obtained": (1.0, 0.38, 0.25)}
 _WIRE = (0.35, 0.88, 0.80)
@@ -77,19 +77,21 @@ def draw_picture(
     camera = _camera(scene, size, eye, look_at)
     sun, image = _background(scene, camera)
     finer = camera.enlarged(_FINER)
-    canvas = Canvas(finer)
+    canvas = Canvas(finer, CHANNELS)
     faces, colors = scene.surfaces()
     triangles = np.concatenate([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]])
-    canvas.add_triangles(triangles, np.concatenate([_shaded(faces, colors, camera, sun)] * 2))
+    lit = lit_colors(faces, colors, camera, sun)
+    canvas.add_triangles(triangles, np.concatenate([lit[:, [0, 1, 2]], lit[:, [0, 2, 3]]]))
+    add_sunlight(canvas, finer, sun, triangles)
     width = _FINER * max(1.0, size[1] / 540.0)
     for name, points in scene.paths():
         if len(points) > 1:
             rows = np.unique(np.linspace(0, len(points) - 1, _MOST_POINTS).astype(int))
-            canvas.add_line(points[rows], np.array(_PATHS[name]), width)
+            canvas.add_line(points[rows], _unlit(_PATHS[name]), width)
     if has_collisions:
         faces = scene.collision_faces()
         ends = faces[:, [1, 2, 3, 0]]
-        canvas.add_segments(faces.reshape(-1, 3), ends.reshape(-1, 3), np.array(_WIRE), 0.6 * width)
+        canvas.add_segments(faces.reshape(-1, 3), ends.reshape(-1, 3), _unlit(_WIRE), 0.6 * width)
     image = _merged(image, canvas)
     triads = [("B", camera.axes @ scene.rot_sb)]
     triads.append(("L", camera.axes) if scene.is_local else ("W", camera.axes))
@@ -137,27 +139,19 @@ def _background(scene: Scene, camera: Camera) -> tuple[Floats, Floats]:
             sun_i = np.asarray(scene.earth.sun(scene.time))
         sun_i = sun_i / np.linalg.norm(sun_i)
     sky = Sky(scene.rot_ws, scene.place_eci if scene.about_earth else None, rot_ei, sun_i)
-    return scene.rot_ws.T @ sun_i, sky.paint(camera)
+    return light if sky.is_eclipsed() else scene.rot_ws.T @ sun_i, sky.paint(camera)
 
 
-def _shaded(faces: Floats, colors: Floats, camera: Camera, sun: Floats) -> Floats:
-    """Return the colours (n, 3) of faces (n, 4, 3) that are lit by the Sun, and weakly from the camera."""
-    normals = np.cross(faces[:, 2] - faces[:, 0], faces[:, 3] - faces[:, 1])
-    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
-    to_camera = camera.position - faces.mean(axis=1)
-    to_camera /= np.linalg.norm(to_camera, axis=1, keepdims=True)
-    facing = np.einsum("ni,ni->n", normals, to_camera)
-    normals *= np.where(facing < 0.0, -1.0, 1.0)[:, None]
-    light = _AMBIENT + _FROM_CAMERA * np.abs(facing) + _FROM_SUN * (normals @ sun).clip(0.0)
-    shaded: Floats = (colors * light[:, None]).clip(0.0, 1.0)
-    return shaded
+def _unlit(color: tuple[float, ...]) -> Floats:
+    """Return the components of a colour on a canvas that the Sun does not change."""
+    return np.array([*color, *[0.0] * (CHANNELS - 3)])
 
 
 def _merged(image: Floats, canvas: Canvas) -> Floats:
     """Return the background with the mean of the samples of each pixel of the canvas drawn over it."""
     shape = (image.shape[0], _FINER, image.shape[1], _FINER)
     is_drawn = (canvas.inverse_depth > 0.0).reshape(shape)
-    drawn = canvas.color.reshape(*shape, 3).sum(axis=(1, 3)) / _FINER**2
+    drawn = canvas.color[..., :3].clip(0.0, 1.0).reshape(*shape, 3).sum(axis=(1, 3)) / _FINER**2
     merged: Floats = drawn + (1.0 - is_drawn.mean(axis=(1, 3)))[..., None] * image
     return merged
 

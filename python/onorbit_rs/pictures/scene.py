@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 NEARBY = 8.0
 """Distance, in sizes of the largest robot, up to which a robot is included in the picture by default."""
 
-_AROUND = 72
+_AROUND = 48
 """Number of faces around a round body."""
 
 _TARGET = (0.80, 0.67, 0.35)

@@ -61,6 +61,13 @@ class Sky:
                 self._add_earth(image[rows[0] : rows[-1] + 1], camera, rows)
         return image
 
+    def is_eclipsed(self) -> bool:
+        """Return True if the scene is in the shadow of the Earth, a cylinder."""
+        if self.place is None:
+            return False
+        height = float(self.place @ self.sun)
+        return height < 0.0 and float(np.linalg.norm(self.place - height * self.sun)) < 1e3 * EARTH_RADIUS_KM
+
     def _add_earth(self, image: Floats, camera: Camera, rows: NDArray[np.int64]) -> None:
         """Draw the Earth and its air into some rows of the picture."""
         assert self.place is not None
