@@ -9,7 +9,7 @@ MATURIN := VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quie
 
 RUST := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
 
-.PHONY: help demo test test-rust test-python lint docs docs-publish bench bench-quick bench-rust bench-orbits bench-everything bench-spart bench-against certificate-campaign contact-campaign capture-campaign test-campaign fuzz soak test-ros2 test-peers notices wheel clean
+.PHONY: help demo test test-rust test-python lint docs docs-publish bench bench-quick bench-rust bench-orbits bench-everything bench-spart bench-against certificate-campaign contact-campaign capture-campaign test-campaign fuzz soak test-ros2 test-peers notices wheel gallery clean
 
 help: ## prints this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 16
@@ -59,6 +59,10 @@ $(VENV)/.documented: pyproject.toml | $(VENV)/.built
 
 docs: $(VENV)/.built $(VENV)/.documented ## builds the documentation with warnings as errors and checks its links
 	$(BIN)/python website/build.py
+
+# NAME= entry of website/gallery.toml; default: all, in a few minutes
+gallery: $(VENV)/.built $(VENV)/.tested ## runs the bundled scenarios, draws their pictures, writes docs/gallery.md
+	$(BIN)/python website/gallery.py $(NAME)
 
 # TO= folder of all versions, which can be served as it is
 docs-publish: docs ## adds the documentation to a folder with one website per version
