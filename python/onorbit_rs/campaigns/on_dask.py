@@ -33,7 +33,7 @@ _CONNECT_S = 10.0
 _WITHOUT_WORKERS_S = 60.0
 """Wall-clock time for which a campaign waits for the first worker, s."""
 _LOST_S = 15.0
-"""Wall-clock time without a connection after which a cluster counts as gone, s."""
+"""Wall-clock time without a connection after which it counts as lost, s."""
 _RESULT_S = 1.0
 """Wall-clock time for which a result is awaited before the connection is checked, s.
 
