@@ -43,7 +43,8 @@ KeepRowsOption = Annotated[
     int | None, typer.Option(metavar="N", help="Keep the first and the last N rows only, for long runs.")
 ]
 PriorityOption = Annotated[
-    bool, typer.Option("--priority", help="Use real-time priority (pace real_time, Linux; needs permission).")
+    bool,
+    typer.Option("--priority", help="Use real-time priority; requires pace real_time, Linux and permission."),
 ]
 LogOption = Annotated[
     Path | None,

@@ -201,7 +201,9 @@ def _append(file: Path, content: bytes, *, after: int) -> None:
     with open_to_change(file) as stream:
         if stream.seek(0, os.SEEK_END) < after:
             raise _refused(
-                f"{file} has lost rows that this run wrote, so the checkpoint cannot be updated", file
+                f"{file} has lost rows that this run wrote, so the checkpoint cannot be updated; run the "
+                "scenario again",
+                file,
             )
         stream.truncate(after)
         stream.seek(after)

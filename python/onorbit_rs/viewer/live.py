@@ -122,7 +122,9 @@ class View(ABC):
             return
         self._is_lost = True
         warnings.warn(
-            f"the viewer was closed or failed ({error}); the run continues without it", stacklevel=2
+            f"the viewer was closed or failed ({error}); the run continues without it; to view it later, "
+            "open its recording with: onorbit show DIR",
+            stacklevel=2,
         )
 
 
@@ -197,8 +199,8 @@ def connected_recording(name: str) -> rr.RecordingStream | None:
     """Open a viewer window and return a recording that is sent to it; if that fails, warn and return None."""
     if not has_screen():
         warnings.warn(
-            "no display is available; the run continues without the viewer; give an output folder, and open "
-            "its recording on a computer with a display with: onorbit show DIR",
+            "no display is available; the run continues without the viewer; to view it later, open its "
+            "recording on a computer with a display: onorbit show DIR",
             stacklevel=2,
         )
         return None
@@ -211,6 +213,10 @@ def connected_recording(name: str) -> rr.RecordingStream | None:
         recording = new_recording(name)
         recording.connect_grpc(url)
     except Exception as error:
-        warnings.warn(f"the viewer cannot be reached ({error}); the run continues without it", stacklevel=2)
+        warnings.warn(
+            f"the viewer cannot be reached ({error}); the run continues without it; to view it later, "
+            "open its recording with: onorbit show DIR",
+            stacklevel=2,
+        )
         return None
     return recording

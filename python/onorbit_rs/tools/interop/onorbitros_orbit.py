@@ -165,7 +165,7 @@ def _date(source: Source, name: str) -> datetime | None:
         return first + timedelta(days=values["mday"] - 1) + clock
     except (ValueError, OverflowError):
         given = ", ".join(f"{part} {values[part]}" for part in _DATE_PARTS)
-        raise source.fail(name, f"the date ({given}) is not within the years 1 to 9999") from None
+        raise source.fail(name, f"the date ({given}) is outside the years 1 to 9999; correct it") from None
 
 
 def read_fixed_pose(source: Source) -> None:
