@@ -56,6 +56,11 @@ class RecordedRun:
         system : str, optional
             Name of the system; required if the run has several systems.
 
+        Returns
+        -------
+        dict of str to array
+            Columns (T, ...) as in ``trace.npz``, in SI units.
+
         Raises
         ------
         InputError
@@ -70,6 +75,13 @@ class RecordedRun:
         ----------
         system : str, optional
             Name of the system; required if the run has several systems.
+
+        Returns
+        -------
+        labels : list of Label
+            Name and unit of each number in a row.
+        rows : (T, n) array
+            Values, in SI units.
 
         Raises
         ------
@@ -93,6 +105,11 @@ class RecordedRun:
         ----------
         system : str, optional
             Name of the system; required if the run has several systems.
+
+        Returns
+        -------
+        pandas.DataFrame
+            One row per time, in SI units.
 
         Raises
         ------
@@ -118,6 +135,11 @@ class RecordedRun:
         ----------
         system : str, optional
             Name of the system; required if the run has several systems.
+
+        Returns
+        -------
+        xarray.Dataset
+            Variables over ``time``, in SI units.
 
         Raises
         ------
