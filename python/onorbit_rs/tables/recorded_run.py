@@ -109,7 +109,7 @@ class RecordedRun:
         Returns
         -------
         pandas.DataFrame
-            One row per time, in SI units.
+            Rows of the trace, in SI units.
 
         Raises
         ------
