@@ -35,7 +35,7 @@ def load_campaign(
     Raises
     ------
     NotFoundError
-        If ``source`` is neither a bundled name nor a file.
+        If ``source`` is neither a bundled name nor a file, or is the name of a bundled scenario.
     DtypeError
         If ``source`` has another type.
     ScenarioError

@@ -100,7 +100,7 @@ def _array(pa: Any, name: str, values: list[Any]) -> Any:
 
 
 def write_table(table: pa.Table, file: Path) -> None:
-    """Write a table as Parquet."""
+    """Write a table as Parquet; an OSError has the path of the file."""
     arrow()
     import pyarrow.parquet as pq
 

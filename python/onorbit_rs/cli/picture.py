@@ -69,7 +69,7 @@ class View:
 
 
 def save_picture(saved: SavedRun, summary: dict[str, Any], picture: Path, view: View) -> None:
-    """Draw the scene of a run as PNG.
+    """Draw the scene of a run, and write it to a PNG file.
 
     Raises
     ------

@@ -70,7 +70,7 @@ def campaign_html(table: pa.Table) -> str | None:
 
 
 def show_tables() -> None:
-    """Register the display with IPython, if this is a notebook."""
+    """Register the display of campaign tables with IPython, if it is running."""
     ipython = sys.modules.get("IPython")
     shell = ipython.get_ipython() if ipython else None
     if shell is None:

@@ -25,13 +25,13 @@ class GripForceController(Law):
 
     kind: Literal["grip_force"] = "grip_force"
     force: Annotated[Force, Positive]
-    """Normal force of each finger."""
+    """Desired mean of the normal forces of the fingers."""
     closing_rate: JointRates
     """Rate of the joints until all fingers touch; the sign is that of the closing motion."""
     damping: JointNumber
     """Damping, N m s/rad, or N s/m for prismatic joints."""
     ramp: Annotated[Time, NotNegative] = 0.5
-    """Time in which the desired force would increase from zero to ``force``."""
+    """Time that an increase of the desired force from zero to ``force`` takes."""
     integral: Annotated[Rate, NotNegative] = 5.0
     """Gain of the integral of the force error, 1/s."""
     stiffness: JointNumber = 0.0
