@@ -141,7 +141,7 @@ fn joints_between_a_world_link_and_the_base_are_named() {
     mobile.add("l2", revolute("yaw", Vector3::z()), Link::new("body", ball(1.0))).unwrap();
     mobile.add("body", revolute("arm", Vector3::x()), Link::new("hand", ball(1.0))).unwrap();
     let refused = mobile.build().unwrap_err().to_string();
-    let advice = "give it an inertial, or remove the joints 'x', 'y', 'yaw' and the massless links above them; \
+    let advice = "give it inertial properties, or remove the joints 'x', 'y', 'yaw' and the massless links above them; \
         the robot floats without them";
     assert!(refused.ends_with(advice), "{refused}");
 }

@@ -230,7 +230,7 @@ pub(crate) fn fixed<const N: usize>(
     }
 }
 
-/// Reads a (3,) vector; returns `default` if none is given.
+/// Reads the vector `value`, (3,); returns `default` if it is `None`. `name` is the argument in error messages.
 pub(crate) fn vector(
     value: Option<&Bound<'_, PyAny>>,
     name: &str,

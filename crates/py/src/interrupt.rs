@@ -64,7 +64,8 @@ pub(crate) fn abandonable<R: Send + 'static>(
     py.detach(|| worker.join()).map_err(|panic| std::panic::resume_unwind(panic))
 }
 
-/// Integrates a numerical orbit over `times`, s; Ctrl-C interrupts the integration. Other orbits need none.
+/// Integrates a numerical orbit over `times`, s; Ctrl-C interrupts the integration. Other orbits do not require
+/// an integration.
 pub(crate) fn prepare(py: Python<'_>, orbit: &dyn Orbit, times: &[f64]) -> PyResult<()> {
     if orbit.prepare(times, 0) {
         return Ok(());

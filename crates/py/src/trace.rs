@@ -121,9 +121,9 @@ macro_rules! getters {
                 self.trace.limits_exceeded(&self.model)
             }
 
-            /// Tracking errors (desired minus actual) by the name of the control: (T, 6) for a tool, m and
-            /// rad, or (T, k) for k joints, in the unit of the commanded quantity. They are zero while the
-            /// control is inactive.
+            /// Tracking errors (desired minus actual) by the name of the control: (T, 6) for a tool, m and rad;
+            /// (T, k) for k joints, in the unit of the commanded quantity; or (T, 1) for a :class:`GripForce`,
+            /// N. They are zero while the control is inactive.
             #[getter]
             fn tracking<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
                 let all = PyDict::new(this.py());
@@ -188,9 +188,9 @@ macro_rules! getters {
             /// ``name`` is the name of the control, and ``outcome`` is ``succeeded``,
             /// ``path_tolerance_violated``, ``goal_tolerance_violated`` or ``unfinished``. ``time`` is the
             /// simulation time of the decision, s (None if unfinished). ``component`` is the joint,
-            /// ``position`` or ``attitude`` whose error was too large, and ``error`` is this error, m or rad
-            /// (m/s or rad/s if rates are commanded). Both have the value None unless a tolerance was
-            /// violated.
+            /// ``position``, ``attitude`` or ``force`` whose error was too large, and ``error`` is this error,
+            /// m or rad (m/s or rad/s if rates are commanded; N for ``force``). Both have the value None unless
+            /// a tolerance was violated.
             #[getter]
             fn results<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
                 let all = self.trace.results.iter().map(|result| {

@@ -32,13 +32,13 @@ pub enum ModelError {
     )]
     TooManyJoints { most: usize },
     #[error(
-        "the robot has no mass, but a floating base requires mass; give a link an inertial, or pass its mass in the \
-         argument 'links'"
+        "the robot has no mass, but a floating base requires mass; give a link inertial properties, or pass its \
+         mass in the argument 'links'"
     )]
     NoMass,
     #[error(
         "nothing resists the motion of joint '{joint}': link '{link}' and its descendants have no inertia \
-         about the joint axis; add an inertial to one of these links, or make the joint fixed"
+         about the joint axis; add inertial properties to one of these links, or make the joint fixed"
     )]
     MasslessSubtree { joint: String, link: String },
     #[error("nothing resists the motion of the base '{link}'; {}", base_advice(.joints))]
@@ -240,15 +240,17 @@ fn names(names: &[String]) -> String {
 fn base_advice(joints: &[String]) -> String {
     let names: Vec<String> = joints.iter().map(|joint| format!("'{joint}'")).collect();
     match joints.len() {
-        0 => "the robot's inertia is singular about some axis; give the base an inertial, or make its \
+        0 => {
+            "the robot's inertia is singular about some axis; give the base inertial properties, or make its \
         joints fixed"
-            .to_owned(),
+                .to_owned()
+        }
         1 => format!(
-            "give it an inertial, or remove both it and the joint {}; the robot floats even without them",
+            "give it inertial properties, or remove both it and the joint {}; the robot floats even without them",
             names[0]
         ),
         _ => format!(
-            "give it an inertial, or remove the joints {} and the massless links above them; the robot floats \
+            "give it inertial properties, or remove the joints {} and the massless links above them; the robot floats \
              without them",
             names.join(", ")
         ),

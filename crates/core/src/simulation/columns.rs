@@ -313,7 +313,7 @@ pub static TRACKING: Column = column!(
     Controls,
     WHOLE,
     "Desired minus actual: position and rotation vector of a task (axes of B if its reference is relative \
-     to the base), otherwise one number per joint; zero while the control is inactive."
+     to the base), one number per joint, or the force of a grip (N); zero while the control is inactive."
 );
 
 /// Wrenches on the bodies: one column per effect and, if a control follows external commands, one column for
@@ -338,10 +338,10 @@ pub static CONTACTS: Column = column!(
     "W",
     Contacts,
     CONTACT,
-    "Smallest distance of the two sides (negative: depth), force on the second side, point and normal (from the \
-     first side to the second) at the smallest distance, sliding speed, power taken from the motion, elastic energy, \
-     and, since the start of the run, energy dissipated, impulse on the second side, number of touches and largest \
-     normal force."
+    "Smallest distance between the two sides (negative: depth), force on the second side, point and normal (from the \
+     first side to the second) of the nearest pair of pieces, sliding speed at this point, power removed from the \
+     motion, elastic energy, and, since the start of the run, dissipated energy, impulse on the second side, number of \
+     touches and largest normal force."
 );
 
 /// Forces of the closed loops, one column per loop.

@@ -8,7 +8,7 @@ pub(super) const UNIT_NORM: f64 = 1e-6;
 /// Largest accepted distance from the reference orbit, m (a tenth of a light year), and largest accepted
 /// joint position, rad or m.
 const FARTHEST: f64 = 1e15;
-/// Speed of light, m/s, the largest accepted speed, because the mechanics is Newtonian.
+/// Speed of light, m/s. It is the largest accepted speed, because the equations of motion are Newtonian.
 const LIGHT: f64 = 299_792_458.0;
 /// Largest accepted angular velocity and joint rate, rad/s; products of larger values may overflow.
 const FASTEST: f64 = 1e9;

@@ -25,12 +25,12 @@ use std::sync::Arc;
 ///     Law of the normal force, or of rigid impacts. Without it, only the distance is recorded and no force
 ///     acts.
 /// friction : Friction, optional
-///     Law of friction of a compliant normal force; default: no friction. An ``ImpactLaw`` has its own
-///     friction.
+///     Law of friction; default: no friction. It requires a compliant normal force: an ``ImpactLaw`` has its
+///     own coefficient of friction.
 /// name : str, optional
 ///     Name of the contact; default: ``"links_a|links_b"``.
 /// start_overlapping : bool
-///     If True, the links may overlap at the start of a run; not with an ``ImpactLaw``.
+///     If True, the links may overlap at the start of a run. It cannot be combined with an ``ImpactLaw``.
 ///
 /// Raises
 /// ------
@@ -79,9 +79,10 @@ impl PyContact {
         let law = normal.map(normal_law).transpose()?;
         if let (Some(Law::Impact(_)), true) = (&law, friction.is_some() || start_overlapping) {
             let (excluded, remedy) = match friction {
-                Some(_) => {
-                    ("friction", "give the coefficient in the law alone, such as oo.ImpactLaw(0.5, 0.3)")
-                }
+                Some(_) => (
+                    "friction",
+                    "omit friction and give its coefficient in the law, such as oo.ImpactLaw(0.5, 0.3)",
+                ),
                 None => ("start_overlapping", "rigid bodies cannot overlap; omit start_overlapping"),
             };
             let message = format!("the contact '{name}' has an ImpactLaw together with {excluded}; {remedy}");
@@ -112,7 +113,7 @@ impl PyContact {
 }
 
 impl PyContact {
-    /// Returns the law of the compliant forces and the law of impacts, of which at most one exists.
+    /// Returns the law of the compliant forces and the law of impacts, of which at most one is not `None`.
     fn laws(&self, py: Python<'_>) -> PyResult<(Option<ContactLaw>, Option<ImpactLaw>)> {
         let Some(normal) = &self.normal else { return Ok((None, None)) };
         match normal_law(normal.bind(py))? {

@@ -161,20 +161,21 @@ impl PySpringDashpot {
     }
 }
 
-/// Contact of bodies that do not deform: impacts take no time.
+/// Law of contacts between rigid bodies, whose impacts are instantaneous.
 ///
-/// An impact changes the velocities by impulses at all points that touch at this instant. Each point separates
-/// at ``restitution`` times its speed of approach or faster, and its impulse is inside Coulomb's cone with the
-/// coefficient ``friction``. A point that slides afterwards has its impulse on the cone, opposite to the
-/// sliding. Bodies that would rebound more slowly than 10 um/s stay in contact; the contact then exerts the
-/// forces that keep the gap, with the same cone.
+/// An impact changes the velocities by impulses at all points that touch at this instant. Each point with an
+/// impulse separates at ``restitution`` times its speed of approach, and points without an impulse may separate
+/// faster. The impulses are inside Coulomb's friction cone with the coefficient ``friction``. At a point that
+/// slides afterwards, the impulse is on the cone, opposite to the direction of sliding. Bodies that would
+/// rebound more slowly than 10 um/s stay in contact; they then exert the forces that prevent an overlap,
+/// limited by the same cone.
 ///
 /// Parameters
 /// ----------
 /// restitution : float
 ///     Coefficient of restitution, from 0 (the bodies do not rebound) to 1 (elastic).
 /// friction : float
-///     Coefficient of friction, static and kinetic, at least 0.
+///     Coefficient of both static and kinetic friction, at least 0.
 ///
 /// Raises
 /// ------
@@ -183,9 +184,10 @@ impl PySpringDashpot {
 ///
 /// Notes
 /// -----
-/// The impulses conserve momentum and never create energy: where friction and restitution together would, the
-/// restitution of the impact is reduced. A sliding contact may have no force that satisfies the law (Painlevé's
-/// paradox), which is an error of the run; use a compliant force such as :class:`HuntCrossley` then.
+/// The impulses conserve momentum and never create energy: if friction and restitution together would do so,
+/// the restitution of the impact is reduced. For some sliding contacts, no force satisfies the law (Painlevé's
+/// paradox). The run then raises a ``SimulationError``; use a compliant normal force such as
+/// :class:`HuntCrossley` for such a contact.
 ///
 /// Source: Moreau, Unilateral contact and dry friction in finite freedom dynamics, in: Nonsmooth Mechanics and
 /// Applications, 1988.
@@ -224,7 +226,7 @@ impl PyImpactLaw {
     }
 }
 
-/// Law of a contact along the normal.
+/// Law of a contact in the direction of the normal.
 pub(super) enum Law {
     /// Compliant normal force.
     Compliant(NormalLaw),
@@ -232,7 +234,7 @@ pub(super) enum Law {
     Impact(ImpactLaw),
 }
 
-/// Reads a law of a contact along the normal.
+/// Reads the argument `normal`: a `HuntCrossley`, a `SpringDashpot` or an `ImpactLaw`.
 pub(super) fn normal_law(value: &Bound<'_, PyAny>) -> PyResult<Law> {
     if let Ok(law) = value.cast::<PyHuntCrossley>() {
         return Ok(Law::Compliant(law.get().law()));

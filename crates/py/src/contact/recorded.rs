@@ -36,7 +36,8 @@ impl PyContactTrace {
         part_of(&CONTACTS, self.values.bind(py), "force")
     }
 
-    /// Point midway between the nearest points of both sides, at which the force acts, (T, 3), m, in W.
+    /// Point at which the force acts, (T, 3), m, in W; without a force, midway between the nearest points of
+    /// both sides. If several pairs of pieces touch, it is that of the pair with the smallest gap.
     #[getter]
     fn point<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         part_of(&CONTACTS, self.values.bind(py), "point")
@@ -66,8 +67,9 @@ impl PyContactTrace {
         part_of(&CONTACTS, self.values.bind(py), "elastic")
     }
 
-    /// Energy that the contact has dissipated since the start of the run, (T,), J. It decreases, and may be
-    /// negative, where the elastic energy of polyhedra jumps; see the limits of contacts in the documentation.
+    /// Energy that the contact has dissipated since the start of the run, (T,), J. It decreases, and may become
+    /// negative, if the elastic energy of contacts between polyhedra changes discontinuously; see the limits of
+    /// contacts in the documentation.
     #[getter]
     fn dissipated<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         part_of(&CONTACTS, self.values.bind(py), "dissipated")

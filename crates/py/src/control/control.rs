@@ -26,7 +26,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// tolerance : float or array
 ///     Permitted error after the end of the reference: a number for all components; for a tool, an array with
 ///     the distance (m) and the angle (rad); or for the ``k`` joints of the control, an array (k,), rad or m
-///     (rad/s or m/s if the reference commands rates).
+///     (rad/s or m/s if the reference commands rates). For a :class:`GripForce`, the permitted error of the
+///     force, N.
 /// path_tolerance : float or array, optional
 ///     Permitted error during the motion, in the same form as ``tolerance``; default: unlimited.
 /// time : float, optional

@@ -1,4 +1,4 @@
-//! Control law that closes a gripper to a force.
+//! Control law that grips an object with a given force.
 
 use super::gains::{one_count, per_joint};
 use super::native_law::{Group, NativeLaw};
@@ -9,35 +9,39 @@ use pyo3::prelude::*;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// Controller that closes the fingers of a gripper until they touch, and then to a given force.
+/// Controller that closes the fingers of a gripper until they touch an object, and then grips it with a given
+/// force.
 ///
-/// The force of the grip is the mean of the normal forces of the fingers, from the contacts of the world. A
-/// finger is what a joint of the group moves, or a joint that mimics one of them; a contact must involve each
-/// finger. Until all fingers touch, each joint moves with its closing rate, ``tau = d (r - v)``. Then the
-/// desired force ``F`` increases to ``force``, and ``tau = L (F + ∫ i (F - N) dt) - d v - p x`` with the
-/// measured force ``N`` and the lever ``L`` of the joint, which follows from the points and normals of the
-/// contacts. ``x`` is the displacement of the joint since all fingers touched, without its part along the
-/// closing motion. If a finger no longer touches, the gripper closes again.
+/// The grip force is the mean of the normal forces on the fingers, which the contacts of the world exert. A
+/// finger consists of the links that a joint of the group moves, or that a joint moves which mimics one of
+/// them. At least one contact must involve each finger. Until all fingers touch, each joint follows its closing
+/// rate ``r``: ``tau = d (r - v)``, with the joint rate ``v``. Then the desired force ``F`` increases to
+/// ``force``, and ``tau = L (F + ∫ i (F - N) dt) - d v - p x``, with the measured grip force ``N`` and the
+/// lever ``L`` of the joint, which follows from the points and normals of the contacts. ``x`` is the
+/// displacement of the joint since all fingers touched, without its component along the closing motion. If a
+/// finger loses contact, the gripper closes at its closing rate again.
 ///
-/// The control has no reference. Its column of ``trace.tracking`` is the force error ``force - N`` in N, shape
-/// (T, 1), and a :class:`Goal` has a tolerance in N. The goal is not reached before the ramp has ended.
+/// The control has no reference. Its column in ``trace.tracking``, (T, 1), contains the force error ``force -
+/// N``, N. The tolerance of a :class:`Goal` is in N; the goal cannot be reached before the desired force equals
+/// ``force``.
 ///
 /// Parameters
 /// ----------
 /// force : float
-///     Normal force of each finger, N. It must not require more than the effort limits of prismatic joints.
+///     Desired mean normal force per finger, N. Prismatic joints must be able to exert it within their effort
+///     limits.
 /// closing_rate : float or (k,) array
 ///     Rates of the joints until all fingers touch, rad/s or m/s; their signs are those of the closing
 ///     motion.
 /// damping : float or (k,) array
-///     Damping ``d``, N m s/rad or N s/m.
+///     Damping ``d``, N m s/rad or N s/m; must be positive.
 /// ramp : float
 ///     Time in which the desired force would increase from zero to ``force``, s.
 /// integral : float
 ///     Gain ``i`` of the integral of the force error, 1/s. While an effort is at its limit, the integral does
 ///     not increase further (anti-windup).
 /// stiffness : float or (k,) array, optional
-///     Stiffness ``p`` against motions of independent joints together with the object, N m/rad or N/m;
+///     Stiffness ``p``, N m/rad or N/m, which keeps independent joints from moving together with the object;
 ///     default: 0.
 /// effort_limit : float or (k,) array, optional
 ///     Limit of the magnitude of the effort, N m or N; ``inf`` for no limit. Default: the effort limits of
@@ -94,7 +98,7 @@ impl PyGripForce {
 impl NativeLaw for PyGripForce {
     fn law(&self, py: Python<'_>, group: &Group<'_, '_>) -> PyResult<Law> {
         if group.reference.is_some() {
-            let message = "a GripForce closes to a force and tracks no reference; omit the reference";
+            let message = "a GripForce controls a force and tracks no reference; omit the reference";
             return Err(plain(py, "ControlError", message));
         }
         let mut law = self.law.clone();

@@ -20,7 +20,7 @@ pub(super) fn epoch(epoch: Any<'_, '_>) -> PyResult<Epoch> {
     } else {
         let datetime = py.import("datetime")?;
         if !epoch.is_instance(&datetime.getattr("datetime")?)? {
-            let fault = "it is neither a text nor a datetime".to_owned();
+            let fault = "it is neither a str nor a datetime".to_owned();
             return Err(EarthError::Epoch { text: epoch.repr()?.to_string(), fault }.into_python(py));
         }
         if epoch.call_method0("utcoffset")?.is_none() {

@@ -39,20 +39,20 @@ pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
 /// Base class of environment effects, which act on the bodies of a simulation.
 ///
 /// The argument ``environment`` of a simulation is a list of effects. A subclass written in Python must define
-/// ``wrenches(t, bodies)``, which returns a (K, 6) array: for each of the K bodies of ``bodies`` (:class:`BodyStates`)
-/// the force through its centre of mass, N, and the torque about its centre of mass, N m, both in W axes.
-/// It may define ``event_times()``, which returns the simulation times, s, at which the wrenches jump: steps end
-/// there.
+/// ``wrenches(t, bodies)``, which returns a (K, 6) array: for each of the K bodies of ``bodies``
+/// (:class:`BodyStates`) the force through its centre of mass, N, and the torque about its centre of mass, N m,
+/// both in W axes. It may also define ``event_times()``, which returns the simulation times, s, at which the
+/// wrenches are discontinuous; steps end at these times.
 ///
-/// ``wrenches`` is called at every stage of a step, so that the order of the integrator is preserved, and for
-/// rows: four to five times per step with RK4, each of which takes some 10 us. Steps may be computed more than
-/// once; the result must therefore depend only on the arguments. An exception ends the run and is raised
-/// unchanged by ``run``.
+/// ``wrenches`` is called at every stage of a step, so that the integrator keeps its order, and for recorded
+/// rows: with RK4, four to five times per step. A call takes about 10 us. Steps may be computed more than once;
+/// the result must therefore depend only on the arguments. An exception in ``wrenches`` ends the run, and
+/// ``run`` raises it unchanged.
 ///
 /// Parameters
 /// ----------
 /// arguments, keywords : any
-///     Arguments of the constructor of a subclass, which are not used here.
+///     Arguments of the constructor of a subclass. This class ignores them.
 ///
 /// Examples
 /// --------
@@ -64,7 +64,7 @@ pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
 #[pyclass(name = "Effect", subclass, frozen, module = "onorbit_rs")]
 pub(crate) struct PyEffect {
     kind: Kind,
-    /// Call with which the effect is pickled; `None` for an effect written in Python.
+    /// Call that reconstructs the effect from a pickle; `None` for an effect written in Python.
     constructor_call: Option<ConstructorCall>,
 }
 

@@ -11,10 +11,11 @@ use onorbit_core::environment::{
 use pyo3::prelude::*;
 use std::sync::Arc;
 
-/// States of all K bodies at one instant, passed to an effect written in Python. Its arrays are copies.
+/// States of all K bodies at one instant, which an effect written in Python receives. The arrays are copies.
 #[pyclass(name = "BodyStates", frozen, get_all, module = "onorbit_rs")]
 pub(crate) struct PyBodies {
-    /// Names of the bodies; in a world of several systems ``SYSTEM/LINK``. Each system begins with its base.
+    /// Names of the bodies: their links, or ``SYSTEM/LINK`` in a world of several systems. The bodies of each
+    /// system begin with its base.
     names: Vec<String>,
     /// Masses, (K,), kg.
     mass: Py<PyAny>,
@@ -50,8 +51,8 @@ impl PythonEffect {
         let (py, name) = (object.py(), type_name(object.as_any()));
         if object.getattr_opt("wrenches")?.is_none() {
             let message = format!(
-                "{name} has no method wrenches(t, bodies), which must return a (K, 6) array of forces, N, and torques, \
-                 N m; add it"
+                "{name} has no method wrenches(t, bodies); define it so that it returns a (K, 6) array of the forces, N, \
+                 and torques, N m, on the K bodies"
             );
             return Err(raise(py, "EffectError", &message, &fields!(py, "name": "wrenches", "got": &name)));
         }

@@ -150,8 +150,8 @@ impl PyModel {
 
     /// Return a copy of the robot with the damping, friction, rotor inertia or spring of one joint replaced.
     ///
-    /// Properties that are omitted do not change. Without stiffness and cubic stiffness, the joint has no
-    /// spring.
+    /// Properties that are omitted do not change. If the stiffness and the cubic stiffness of the joint are
+    /// both 0 afterwards, it has no spring.
     ///
     /// Parameters
     /// ----------

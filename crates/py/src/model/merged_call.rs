@@ -5,9 +5,9 @@ use crate::pickling::ConstructorCall;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Returns the call that reconstructs `model.METHOD(name, **keywords)`, such as `Model.with_joint`. Successive
-/// changes of one link or joint are merged into a single call, so that intermediate models do not remain in
-/// memory.
+/// Returns the call of `method`, such as `Model.with_joint`, with the arguments `name` and `keywords`, that
+/// reconstructs the changed copy of `model`. Successive changes of the same link or joint are merged into a
+/// single call, so that intermediate models do not remain in memory.
 pub(super) fn merged_call(
     model: &Bound<'_, PyModel>,
     method: &str,

@@ -138,8 +138,8 @@ fn frame_at(
 /// held_for : float
 ///     Time for which the conditions of the latch must hold before the capture, s; only with ``within``.
 /// touching : list of str, optional
-///     Names of contacts between both systems that must touch, which is another condition of the latch; only
-///     with ``within``. Default: none.
+///     Names of contacts between the two systems that must also touch for the latch to close; only with
+///     ``within``. Default: none.
 /// seat : float, optional
 ///     Time, s, during which the captured frame moves to ``pose`` after the capture, as with latches and
 ///     grapple fixtures. The motion starts and ends at rest. Default: the relative pose at the capture is

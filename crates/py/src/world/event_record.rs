@@ -39,8 +39,9 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 ///     sums of the magnitudes of the momenta of their bodies. Zero for a contact, whose forces on both sides
 ///     act at one point.
 /// peak_force : float, optional
-///     Largest normal force since the touch-down, N; None unless the event is a lift-off. It is the largest
-///     force at the end of a step, or the maximum of the parabola through three such forces.
+///     Largest normal force since the touch-down, N; None unless the event is the lift-off of a contact with a
+///     compliant normal force. It is the largest force at the end of a step, or the maximum of the parabola
+///     through three such forces.
 ///
 /// Raises
 /// ------
@@ -66,7 +67,8 @@ pub(crate) struct PyEventRecord {
     #[pyo3(get)]
     energy_lost: f64,
     momentum_error: [f64; 2],
-    /// Largest normal force since the touch-down, N; None unless the event is a lift-off.
+    /// Largest normal force since the touch-down, N; None unless the event is the lift-off of a contact with a
+    /// compliant normal force.
     #[pyo3(get)]
     peak_force: Option<f64>,
 }

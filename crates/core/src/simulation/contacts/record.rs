@@ -9,7 +9,7 @@ use crate::simulation::state::State;
 use crate::simulation::tree::Tree;
 use crate::spatial::{Real, Vec3};
 
-/// Row of a contact: sums over its pieces, and the geometry of the pieces with the smallest gap.
+/// Row of a contact: sums over its pairs of pieces, and the geometry of the pair with the smallest gap.
 struct Row {
     gap: f64,
     force: Vec3<f64>,
