@@ -54,7 +54,10 @@ BAD: dict[str, Bad] = {
         {"link": "base"},
     ),
     "massless leaf": Bad(
-        massless_leaf, "ModelError", ("arm", "hinge", "add inertial properties"), {"link": "arm", "joint": "hinge"}
+        massless_leaf,
+        "ModelError",
+        ("arm", "hinge", "add inertial properties"),
+        {"link": "arm", "joint": "hinge"},
     ),
     "inertia without mass": Bad(lambda: link(mass=None), "ModelError", ("given without mass",)),
     # joints and names

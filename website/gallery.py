@@ -24,12 +24,11 @@ INTRODUCTION = """# Gallery
 
 <!-- Written by website/gallery.py (make gallery). Edit website/gallery.toml. -->
 
-Every bundled scenario and campaign, with the command that runs it. A run takes a few seconds and writes a
-folder
-with the trace, figures and a recording; `onorbit show NAME` opens the recording in the viewer.
-The second command draws the picture: `--at` is the time in s; `--eye`, the camera, and `--look-at` are
-points in m relative to the base, in the axes `L` (x away from the Earth, y along the track), or `W` without
-an orbit. `onorbit copy NAME` copies a scenario to a file, for editing.
+This page shows every bundled scenario and campaign with the command that runs it. A run takes a few seconds
+and writes a folder with the trace, figures and a recording; `onorbit show NAME` opens the recording in the
+viewer. The second command draws the picture: `--at` is the time in s; `--eye`, the camera, and `--look-at`
+are points in m relative to the base, in the axes `L` (x away from the Earth, y along the track), or `W`
+without an orbit. `onorbit copy NAME` copies a scenario to a file for editing.
 """
 
 

@@ -1,4 +1,4 @@
-"""Light on surfaces: from everywhere, from the camera, and from the Sun, whose shadows are drawn."""
+"""Light on surfaces: ambient light, light from the camera, and light of the Sun, which casts shadows."""
 
 from __future__ import annotations
 
@@ -17,16 +17,19 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 AMBIENT, FROM_CAMERA, FROM_SUN = 0.24, 0.42, 0.54
-"""Fractions of the colour of a surface that each light contributes at most."""
+"""Largest fractions of the colour of a surface that the lights contribute."""
 
 TEXELS = 1536
-"""Width and height of the map of the surfaces that the Sun shines on."""
+"""Width and height of the map of the surfaces that are lit by the Sun, cells."""
 
 CHANNELS = 7
-"""Components of :func:`lit_colors`."""
+"""Number of components of :func:`lit_colors`."""
 
 _OFFSET = 2.0
-"""Distance behind the map at which a surface is lit, in cells and times 1 + tan of the angle of incidence."""
+"""Distance behind the nearest surface up to which points are lit, in cells, for perpendicular incidence.
+
+It is multiplied by one plus the tangent of the angle of incidence.
+"""
 
 _GRAZING = 0.03
 """Cosine of the largest angle of incidence for which the offset increases."""
@@ -57,7 +60,7 @@ class SunView:
 
 
 def lit_colors(faces: Floats, colors: Floats, camera: Camera, sun: Floats) -> Floats:
-    """Return the light at the corners (n, 4, 7) of faces (n, 4, 3) that are seen from the camera.
+    """Return the light (n, 4, 7) at the corners of faces (n, 4, 3), m, as seen from the camera.
 
     The components are the colour without the Sun, the colour that the Sun adds where there is no shadow, and
     the cosine of the angle of incidence.
@@ -75,7 +78,7 @@ def lit_colors(faces: Floats, colors: Floats, camera: Camera, sun: Floats) -> Fl
 
 
 def add_sunlight(canvas: Canvas, camera: Camera, sun: Floats, triangles: Floats) -> None:
-    """Add the light of the Sun, where no surface is in its way, to a canvas of seven channels."""
+    """Add the light of the Sun to the parts of a canvas of seven channels that are not in shadow."""
     is_lit = canvas.color[..., 6] > 0.0
     if not is_lit.any():
         return
@@ -98,9 +101,9 @@ def _points(canvas: Canvas, camera: Camera, rows: slice, is_lit: NDArray[np.bool
 
 
 def _free(view: SunView, nearest: Floats, points: Floats, cosine: Floats) -> Floats:
-    """Return the fraction of the Sun's light that reaches each of some points, the mean over nine cells.
+    """Return the fraction (k,) of the Sun's light that reaches points (k, 3), m, as the mean over nine cells.
 
-    ``cosine`` is that of the angle between the normal of the surface and the rays.
+    ``cosine`` (k,) is that of the angle between the normal of the surface and the rays.
     """
     x, y, height = view.project(points).T
     column, row = x.astype(int), y.astype(int)

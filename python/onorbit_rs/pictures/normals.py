@@ -1,4 +1,4 @@
-"""Normals of surfaces that are given as faces: round bodies are smooth, and edges stay sharp."""
+"""Normals at the corners of faces, with which round bodies look smooth and edges stay sharp."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _SAME = 1e-6
 
 
 def corner_normals(faces: Floats) -> Floats:
-    """Return unit normals (n, 4, 3) at the corners of quadrangles (n, 4, 3), on the normal's side.
+    """Return unit normals (n, 4, 3) at the corners of quadrangles (n, 4, 3), on the side of their normals.
 
     The normal at a corner is the mean, weighted by area, of the normals of all faces that meet there
     smoothly. The last two corners of a triangle coincide; faces without an area have a zero normal.
@@ -37,7 +37,7 @@ def corner_normals(faces: Floats) -> Floats:
 
 
 def _meeting(faces: Floats) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return all pairs of corners (numbers from 0 to 4n - 1) at the same point, both ways and with itself."""
+    """Return all ordered pairs of corners, numbered from 0 to 4n - 1, at the same point, also with itself."""
     points = faces.reshape(-1, 3)
     size = max(float(np.ptp(points, axis=0).max()), 1e-30) if len(points) else 1.0
     cells = np.round((points - points.min(axis=0, initial=0.0)) / (_SAME * size)).astype(np.int64)

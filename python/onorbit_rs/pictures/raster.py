@@ -26,14 +26,14 @@ if TYPE_CHECKING:
             """Height of the picture, pixels."""
 
         def project(self, points: Floats) -> Floats:
-            """Return pixels x and y, and a measure that is larger for nearer points, of points (..., 3)."""
+            """Return pixels x and y of points (..., 3), m, and a measure that is larger for nearer points."""
 
 
 _SMALL = 200
-"""Largest number of pixels in the box around a triangle that is drawn together with others."""
+"""Largest number of pixels in the box around a triangle that is drawn at the same time as others."""
 
 _AT_ONCE = 200_000
-"""Number of pixels that are tested together."""
+"""Number of pixels that are tested at the same time."""
 
 _NEARER = 1.002
 """Factor on the inverse depth of a line, so that a line on a surface is visible."""
@@ -92,7 +92,7 @@ class Canvas:
             self._fill_small(boxes[part], planes[part], colors[part])
 
     def _fill_large(self, box: NDArray[np.int_], planes: Floats, colors: Floats) -> None:
-        """Fill a triangle: the box (4,) of its pixels, its ``planes`` (4, 3), the colours of its corners."""
+        """Fill one triangle with the box (4,) of its pixels, ``planes`` (4, 3) and colours of its corners."""
         x0, y0, x1, y1 = box
         x = np.arange(x0, x1) + 0.5
         y = np.arange(y0, y1)[:, None] + 0.5
@@ -107,7 +107,7 @@ class Canvas:
         self.color[y0:y1, x0:x1][is_visible] = color
 
     def _fill_small(self, boxes: NDArray[np.int_], planes: Floats, colors: Floats) -> None:
-        """Fill many triangles at once: all pixels of their boxes are tested, and the nearest one is drawn."""
+        """Fill many triangles; in each pixel of their boxes, the nearest one is drawn."""
         width, height = (boxes[:, 2:] - boxes[:, :2]).T
         count = width * height
         owner = np.repeat(np.arange(len(boxes)), count)

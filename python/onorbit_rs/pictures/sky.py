@@ -62,7 +62,7 @@ class Sky:
         return image
 
     def is_eclipsed(self) -> bool:
-        """Return True if the scene is in the shadow of the Earth, a cylinder."""
+        """Return True if the scene is in the shadow of the Earth, which is taken as a cylinder."""
         if self.place is None:
             return False
         height = float(self.place @ self.sun)
