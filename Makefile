@@ -9,7 +9,7 @@ MATURIN := VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quie
 
 RUST := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
 
-.PHONY: help demo test test-rust test-python lint docs docs-publish bench bench-quick bench-rust bench-orbits bench-everything bench-spart bench-against certificate-campaign contact-campaign capture-campaign test-campaign fuzz soak test-ros2 test-peers notices wheel gallery clean
+.PHONY: help demo test test-rust test-python lint docs docs-publish bench bench-quick bench-rust bench-orbits bench-everything bench-spart bench-against certificate-campaign contact-campaign capture-campaign test-campaign test-notebooks fuzz soak test-ros2 test-peers notices wheel gallery clean
 
 help: ## prints this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 16
@@ -49,8 +49,8 @@ lint: $(VENV)/.built $(VENV)/.tested ## checks formatting, lints and types
 	cargo fmt --all --check
 	PYO3_PYTHON=$(CURDIR)/$(BIN)/python cargo clippy --workspace --all-targets -- -D warnings
 	RUSTDOCFLAGS='-D warnings' cargo doc --no-deps -p onorbit-core
-	$(BIN)/ruff format --check python tests benches examples website
-	$(BIN)/ruff check python tests benches examples website
+	$(BIN)/ruff format --check python tests benches examples notebooks website
+	$(BIN)/ruff check python tests benches examples notebooks website
 	$(BIN)/mypy
 
 $(VENV)/.documented: pyproject.toml | $(VENV)/.built
@@ -105,6 +105,14 @@ test-campaign: $(VENV)/.built $(VENV)/.tested ## kills the workers of campaigns 
 	CASES=$(or $(CASES),1000) $(BIN)/python -m pytest -s tests/test_campaign_processes.py tests/test_campaign_dask.py \
 		-k killed_workers --timeout 3600
 	$(BIN)/python benches/campaigns.py
+
+$(VENV)/.notebooks: pyproject.toml | $(VENV)/.tested
+	$(MATURIN) --extras campaign,notebooks
+	@touch $@
+
+# NAMES= notebooks, default: all; OUT= folder for the notebooks with their outputs
+test-notebooks: $(VENV)/.built $(VENV)/.notebooks ## runs the notebooks whole in Jupyter, fails on errors and unexpected warnings
+	$(BIN)/python tests/run_notebooks.py $(NAMES) $(if $(OUT),--out '$(OUT)')
 
 contact-campaign: ## checks momentum and energy of random trees through 1000 contacts; CONTACTS= sets their number
 	CONTACTS=$(or $(CONTACTS),1000) cargo test --release -p onorbit-core --test contact_campaign -- --ignored --nocapture

@@ -1,4 +1,4 @@
-"""Notebooks of the folder ``notebooks``: their cells, short parameters, and the warnings that they may issue."""
+"""Notebooks of the folder ``notebooks``: cells, short parameters, and the warnings that they may issue."""
 
 from __future__ import annotations
 

@@ -16,7 +16,11 @@ from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError
 from notebook_cells import NOTEBOOKS, path_of, unexpected_lines
 
-WIDGET = "application/vnd.jupyter.widget-view+json"
+KINDS = {
+    "oo.show(": "application/vnd.jupyter.widget-view+json", "oo.plot(": "image/png",
+    "plt.show(": "image/png", "oo.campaign(": "text/html",
+}  # fmt: skip
+"""What a cell with a call must display."""
 PATIENCE_S = 900
 
 
@@ -25,8 +29,9 @@ def run(name: str, out: Path | None) -> list[str]:
     notebook = nbformat.read(path_of(name), as_version=4)
     with tempfile.TemporaryDirectory() as folder:
         client = NotebookClient(
-            notebook, timeout=PATIENCE_S, kernel_name="python3", resources={"metadata": {"path": folder}}
-        )
+            notebook, timeout=PATIENCE_S, kernel_name="python3", extra_arguments=["--log-level=ERROR"],
+            resources={"metadata": {"path": folder}},
+        )  # fmt: skip
         try:
             client.execute()
         except CellExecutionError as error:
@@ -38,17 +43,19 @@ def run(name: str, out: Path | None) -> list[str]:
 
 
 def problems(notebook: nbformat.NotebookNode, name: str) -> list[str]:
-    """Returns unexpected lines on stderr, and cells that display nothing although they ask for the viewer."""
+    """Returns unexpected lines on stderr, and cells that ask for a viewer or a plot and display none."""
     found = []
     for cell in notebook.cells:
         outputs = cell.get("outputs", ())
+        shown = {kind for output in outputs for kind in output.get("data", {})}
         for output in outputs:
             if output.output_type == "stream" and output.name == "stderr":
                 found += [f"unexpected on stderr: {line}" for line in unexpected_lines(output.text, name)]
-        if cell.cell_type == "code" and "oo.show(" in cell.source:
-            shown = [output.get("data", {}) for output in outputs]
-            if not any(WIDGET in data for data in shown):
-                found.append(f"no viewer below: {cell.source}")
+        if cell.cell_type != "code":
+            continue
+        for call, kind in KINDS.items():
+            if call in cell.source and kind not in shown:
+                found.append(f"no {kind} below: {cell.source}")
     return found
 
 

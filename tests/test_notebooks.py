@@ -1,4 +1,4 @@
-"""The notebooks run as plain Python with short parameters, without Jupyter; ``make test-notebooks`` runs them whole."""
+"""Notebooks as plain Python with short parameters; ``make test-notebooks`` runs them whole, in Jupyter."""
 
 from __future__ import annotations
 

@@ -39,6 +39,12 @@ def test_one_panel_per_unit_and_a_default(reach: oo.Run) -> None:
     assert [one.get_xlabel() for one in axes] == ["", "", "time [s]"]
 
 
+def test_a_notebook_shows_a_plot_without_pyplot(reach: oo.Run) -> None:
+    """Jupyter registers its display of figures only when pyplot is used, which this package does not."""
+    png = oo.plot(reach, "tau")._repr_png_()  # type: ignore[attr-defined]
+    assert png.startswith(b"\x89PNG") and 700 < int.from_bytes(png[16:20], "big") < 900, "pixels of width"
+
+
 def test_a_misspelt_column_names_the_nearest(reach: oo.Run) -> None:
     with pytest.raises(oo.exceptions.InputError, match=r"'q/positon'; did you mean 'q/position'"):
         oo.plot(reach, "q/positon")

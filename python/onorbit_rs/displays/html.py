@@ -59,10 +59,10 @@ def run_html(run: Run) -> str:
 
 def trace_png(trace: Any) -> bytes:
     """Return a plot of the base's position and of the joint positions as PNG."""
-    from onorbit_rs.figures import as_bytes
     from onorbit_rs.figures.plot import plot
 
-    return as_bytes(plot(trace), "png")
+    shown: bytes = plot(trace)._repr_png_()  # type: ignore[attr-defined]
+    return shown
 
 
 def _number(value: Any) -> str:

@@ -6,6 +6,7 @@ no titles, because captions belong to the page. No global state of matplotlib is
 
 from __future__ import annotations
 
+import io
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -43,9 +44,23 @@ MOST_LINES = len(COLORS)
 _CLOCK = ((4 * 86400.0, 86400.0, "d"), (3 * 3600.0, 3600.0, "h"), (1200.0, 60.0, "min"))
 
 
+SCREEN_DPI = 110
+"""Dots per inch of a figure in a notebook."""
+
+
+class NotebookFigure(Figure):
+    """A figure that notebooks display without pyplot, which otherwise registers the display."""
+
+    def _repr_png_(self) -> bytes:
+        """Return the figure as PNG."""
+        content = io.BytesIO()
+        self.savefig(content, format="png", dpi=SCREEN_DPI)
+        return content.getvalue()
+
+
 def new_figure(width: float, height: float) -> Figure:
     """Return an empty figure of this size in inches that draws to memory, without pyplot."""
-    figure = Figure(figsize=(width, height), dpi=DPI, layout="constrained", facecolor="white")
+    figure = NotebookFigure(figsize=(width, height), dpi=DPI, layout="constrained", facecolor="white")
     FigureCanvasAgg(figure)
     return figure
 
