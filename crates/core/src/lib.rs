@@ -18,7 +18,7 @@
 //! | spring at a joint `τ = −(k + k₃ d²) d` | `model/joint_spring.rs` | `JointSpring::torque` |
 //! | velocity after a capture `M v⁺ = Σ J_kᵀ I_k V_k⁻` | `world/impulse.rs` | `connected_velocity` |
 //! | momentum projection `v_b = Mbb⁻¹ (h − Mbm q̇)` | `dynamics/momentum.rs` | `projected_base_twist` |
-//! | signed distance of two shapes, `max over n of min bᵀn − max aᵀn` | `geometry/closest.rs` | `closest` |
+//! | signed distance between two shapes, `max over n of min bᵀn − max aᵀn` | `geometry/closest.rs` | `closest` |
 //! | normal force of a contact `F = k xⁿ (1 + d ẋ)` | `contact/normal.rs` | `NormalLaw::force` |
 //! | elastic-plastic friction `ż = v` inside the cone, `z = μ N/σ d` on it | `contact/friction.rs` | `Friction::after` |
 //! | step of a contact `h = π/(N ω) √(x/x_max)` | `simulation/contacts/step_length.rs` | `longest_step` |

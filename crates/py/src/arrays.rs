@@ -230,7 +230,8 @@ pub(crate) fn fixed<const N: usize>(
     }
 }
 
-/// Reads the vector `value`, (3,); returns `default` if it is `None`. `name` is the argument in error messages.
+/// Reads the vector `value`, (3,); returns `default` if it is `None`. `name` is the name of the argument in
+/// error messages.
 pub(crate) fn vector(
     value: Option<&Bound<'_, PyAny>>,
     name: &str,

@@ -29,7 +29,8 @@ pub(super) fn point_impulse(w: &[[f64; 3]; 3], b: [f64; 3], friction: f64, targe
     })
 }
 
-/// Solves `W p = r` for a symmetric positive definite matrix; `None` if the matrix is singular.
+/// Solves `W p = r` for a symmetric positive definite matrix `W`; `None` if `W` is singular up to rounding
+/// errors.
 fn solve(w: &[[f64; 3]; 3], r: [f64; 3]) -> Option<[f64; 3]> {
     // W = L D Lᵀ
     let d0 = w[0][0];

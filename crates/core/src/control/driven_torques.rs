@@ -20,16 +20,16 @@ pub(super) struct DrivenTorques {
 /// Buffers of [`DrivenTorques::internal`] for `s` commanded rows.
 #[derive(Debug, Default)]
 struct Internal {
-    /// `Wᵀ` and `(P W)ᵀ`, `(s, a)`.
+    /// Matrices `Wᵀ` and `(P W)ᵀ`, row major `(s, a)`.
     shares: Vec<f64>,
     projected: Vec<f64>,
-    /// `Wᵀ P W`, `(s, s)`.
+    /// Matrix `Wᵀ P W`, row major `(s, s)`.
     matrix: Vec<f64>,
     sizes: Vec<f64>,
     scale: Vec<f64>,
     mu: Vec<f64>,
     effort: Vec<f64>,
-    /// `t`, `(a,)`.
+    /// Torques `t`, `(a,)`, N m (N).
     torques: Vec<f64>,
 }
 

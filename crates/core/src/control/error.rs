@@ -28,8 +28,8 @@ pub enum ControlError {
     #[error("{name} is 0; its sign is the direction of the motion, so give a positive or a negative number")]
     Zero { name: &'static str },
     #[error(
-        "control '{control}' grips with {force} N, which requires {effort} N of joint '{joint}', but its effort limit is \
-         {limit} N; reduce the force to {most} N or less, or raise the limit",
+        "control '{control}' grips with {force} N, which requires an effort of {effort} N from joint '{joint}', whose \
+         effort limit is {limit} N; reduce the force to {most} N or less, or raise the limit",
         force = short(*force), effort = short(*effort), limit = short(*limit),
         most = short(force * limit / effort)
     )]
@@ -40,7 +40,7 @@ pub enum ControlError {
     )]
     FingerWithoutContact { control: String, joint: String },
     #[error(
-        "control '{control}' closes a gripper to a force and has no reference, so '{option}' has no effect; omit it"
+        "control '{control}' grips with a given force and has no reference, so '{option}' has no effect; omit it"
     )]
     GripOption { control: String, option: &'static str },
     #[error(

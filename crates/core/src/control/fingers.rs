@@ -67,9 +67,9 @@ impl Finger {
     }
 }
 
-/// Computes the contact forces that oppose the closing motion of each finger. Contacts of fingers with each
-/// other do not count. `closing_rate` has the sign of the closing motion for each joint of the group.
-/// Requires the kinematics of the configuration `q` in `data`.
+/// Computes the contact forces that oppose the closing motion of each finger. Contacts between fingers are
+/// ignored. `closing_rate` has the sign of the closing motion for each joint of the group. Requires the
+/// kinematics of the configuration `q` in `data`.
 pub(super) fn measure<S: Scalar>(
     fingers: &[Finger],
     closing_rate: &PerJoint,

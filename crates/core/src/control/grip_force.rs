@@ -24,7 +24,7 @@ use crate::model::{Axis, BASE_NQ, Model};
 /// closing rate again.
 #[derive(Clone, Debug)]
 pub struct GripForce {
-    /// Normal force of each finger, N.
+    /// Desired mean of the normal forces of all fingers, N.
     pub force: f64,
     /// Rates of the joints until all fingers touch, rad/s (m/s); their signs are those of the closing motion.
     pub closing_rate: PerJoint,
@@ -41,8 +41,8 @@ pub struct GripForce {
 }
 
 impl GripForce {
-    /// Creates a law without stiffness and without effort limits, with a ramp of 0.5 s and an integral gain
-    /// of 5 1/s.
+    /// Creates a law with a desired force, N, a closing rate, rad/s (m/s), and a damping, N m s/rad (N s/m). It
+    /// has a ramp of 0.5 s and an integral gain of 5 1/s, but neither stiffness nor effort limits.
     pub fn new(force: f64, closing_rate: f64, damping: f64) -> Self {
         Self {
             force,

@@ -9,14 +9,14 @@ use crate::spatial::{cholesky_factor, cholesky_solve, dot};
 /// the joints `E` are given.
 ///
 /// The reduced model is `M* q̈ + l = τ` with `l = c* − Q* + f`, where `f` is the sum of the damping and
-/// friction torques and of the feedforward of joint laws, less the torques of springs; the other symbols are those of
-/// [`ComputedTorque`](super::ComputedTorque). A subscript selects the rows or columns of a set of joints. The
-/// joints `E` react like a second base, `q̈_E = y − G q̈_A` with `G = M*_EE⁻¹ M*_EA` and
+/// friction torques and of the feedforward of joint laws, minus the torques of springs; the other symbols are
+/// those of [`ComputedTorque`](super::ComputedTorque). A subscript selects the rows or columns of a set of
+/// joints. The joints `E` react like a second base, `q̈_E = y − G q̈_A` with `G = M*_EE⁻¹ M*_EA` and
 /// `y = M*_EE⁻¹ (τ_E − l_E)`, so that a task `ẍ = J q̈ + d` with the Jacobian `J` depends only on `A`:
 /// `ẍ = J' q̈_A + d + J_E y` with `J' = J_A − J_E G`. The set `A` consists of the joints `C`, whose
 /// accelerations are commanded by joint laws, and the joints `T`, which the tasks drive. A single damped
-/// pseudo-inverse of all task rows gives `q̈_T = J'_T⁺ (p̈r − d − J_E y − J'_C q̈_C) − N k q̇_T − κ D q̇_T`,
-/// so that each task accounts for the reactions to all others. Joints held by friction belong to neither set;
+/// pseudo-inverse of all task rows gives `q̈_T = J'_T⁺ (p̈r − d − J_E y − J'_C q̈_C) − N k q̇_T − κ D q̇_T`, so
+/// that each task accounts for the reactions to all others. Joints held by friction belong to neither set;
 /// their acceleration is zero. For a single task on all joints the solution equals that of
 /// [`computed_torque`](super::computed_torque).
 ///

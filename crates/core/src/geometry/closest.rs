@@ -11,7 +11,7 @@ use super::support::support;
 use super::torus;
 use crate::spatial::Vec3;
 
-/// Returns the signed distance of two shapes, its witness points and its normal, in common axes.
+/// Returns the signed distance between two shapes, its witness points and its normal, in common axes.
 ///
 /// Spheres (except with a hull), pairs of capsules, and half-spaces have closed forms. For a torus and
 /// another shape, the middle circle of the torus is searched for the nearest point. Other pairs of convex
@@ -28,8 +28,8 @@ pub fn closest(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> Result<Pro
     nearest_pieces(a, pose_a, b, pose_b).map(|(proximity, _)| proximity)
 }
 
-/// Computes the distance of two shapes like [`closest`], without checking their dimensions, which the caller
-/// has checked.
+/// Computes the distance between two shapes as [`closest`] does, but without a check of their dimensions, which
+/// the caller must have checked.
 ///
 /// # Errors
 /// The errors of [`closest`], except those for dimensions.
@@ -87,7 +87,7 @@ pub(super) fn nearest_pieces<'a>(
     best.ok_or(GeometryError::EmptyCompound)
 }
 
-/// Returns the distance of two shapes that are not compounds. The kind that comes first in [`rank`] is the
+/// Returns the distance between two shapes that are not compounds. The kind that comes first in [`rank`] is the
 /// first shape of every method, so that exchanging the shapes exchanges the result.
 fn single(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> Result<Proximity, GeometryError> {
     if rank(a) > rank(b) {
@@ -139,8 +139,8 @@ fn sphere(radius: f64, b: &Shape, pose: &Pose) -> Option<Proximity> {
     })
 }
 
-/// Returns the distance of two capsules, which is the distance of their axes less both radii; `None` for
-/// other shapes.
+/// Returns the distance between two capsules, which is the distance between their axes less both radii; `None`
+/// for other shapes.
 fn capsules(a: &Shape, b: &Shape, pose: &Pose) -> Option<Proximity> {
     let (Shape::Capsule { radius: radius_a, half_length }, Shape::Capsule { radius: radius_b, .. }) = (a, b)
     else {

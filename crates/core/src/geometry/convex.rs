@@ -1,4 +1,4 @@
-//! Signed distance of two convex shapes: GJK on their cores, and EPA where the cores overlap.
+//! Signed distance between two convex shapes: GJK on their cores, and EPA where the cores overlap.
 
 use super::epa::least_support;
 use super::gjk::{Cores, Nearest};
@@ -21,13 +21,13 @@ const FINAL: f64 = 1e-12;
 /// Change of the normal, rad, below which the iteration ends as soon as the change no longer decreases.
 const RESOLUTION: f64 = 1e-7;
 
-/// Largest accepted difference between the distance of the witness points and that of the supporting planes,
-/// relative to the size of both shapes.
+/// Largest accepted difference between the bounds of the distance, which are the distance between the witness
+/// points and that between the supporting planes, relative to the size of both shapes.
 const RESOLVED: f64 = 1e-9;
 
-/// Returns the distance of two convex shapes with the pose of the second in the axes of the first, or, if the
-/// iteration does not converge, the difference of the bounds of the distance, m, which is NaN if no normal
-/// was found.
+/// Returns the distance between two convex shapes, given the pose of the second in the axes of the first, or,
+/// if the iteration does not converge, the difference of the bounds of the distance, m, which is NaN if no
+/// normal was found.
 pub(super) fn closest(a: &Shape, b: &Shape, pose: &Pose) -> Result<Proximity, f64> {
     let cores = Cores { a, b, pose: *pose };
     let (sphere_a, sphere_b) = (a.bounding_sphere(), b.bounding_sphere());

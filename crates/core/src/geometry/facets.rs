@@ -8,8 +8,8 @@ use super::polygon::{Point, clip};
 use crate::spatial::Vec3;
 use std::f64::consts::TAU;
 
-/// Part of the perimeter of a patch that is added to the distance of two corners in the slope between them.
-/// Without it, the weight would jump where a corner splits into two.
+/// Part of the perimeter of a patch that is added to the distance between two corners in the slope between
+/// them. Without it, the weight would jump where a corner splits into two.
 const SPREAD: f64 = 0.01;
 
 /// Largest angle, rad, between two edges that count as one line, and largest distance, relative to the

@@ -4,7 +4,7 @@
 //! | Equation | Function |
 //! |-|-|
 //! | signed distance from a point to a shape, its closest point and normal | [`signed_distance`] |
-//! | signed distance of two shapes, `max over n of min bᵀn − max aᵀn` for convex ones | [`closest()`] |
+//! | signed distance between two shapes, `max over n of min bᵀn − max aᵀn` for convex ones | [`closest()`] |
 //! | contact points, `w_i ∝ a_i g(s_i)` | [`manifold()`] |
 //!
 //! `n` is a unit vector; `a` and `b` are points of the first and of the second shape.

@@ -14,7 +14,7 @@ const STEEP: f64 = 0.1;
 pub(super) struct Projection {
     /// First witness point, the origin of the plane's coordinates, m.
     pub(super) origin: Vec3<f64>,
-    /// Distance of the shapes, m.
+    /// Distance between the shapes, m.
     pub(super) distance: f64,
     x: Vec3<f64>,
     y: Vec3<f64>,

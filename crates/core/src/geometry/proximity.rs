@@ -1,9 +1,9 @@
-//! Distance of two shapes, and the points at which it is attained.
+//! Distance between two shapes, and the points at which it is attained.
 
 use super::pose::Pose;
 use crate::spatial::Vec3;
 
-/// Signed distance of two shapes, with witness points and normal in common axes.
+/// Signed distance between two shapes, with witness points and normal in common axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Proximity {
     /// Distance, m. If the shapes overlap, it is minus the length of the shortest translation that separates

@@ -18,7 +18,7 @@ pub struct Loop {
     pub frames: [String; 2],
     /// Poses of the joint in these frames. The axis of the joint is z.
     pub poses: [Isometry3<f64>; 2],
-    /// Distance of the two origins for [`LoopKind::Distance`], m; `None` means the distance at zero joint
+    /// Distance between the two origins for [`LoopKind::Distance`], m; `None` means the distance at zero joint
     /// positions. Other kinds ignore the length.
     pub length: Option<f64>,
     /// True if the start of a simulation is moved to the nearest configuration that closes the loop. If
@@ -37,7 +37,7 @@ pub enum LoopKind {
     Spherical,
     /// Translation along the common z axis: five constraints.
     Prismatic,
-    /// Constant distance of the two origins: one constraint.
+    /// Constant distance between the two origins: one constraint.
     Distance,
 }
 

@@ -24,7 +24,7 @@ pub enum Constraint {
         kind: LoopKind,
         /// Frames of the joint on both bodies, with the axis of the joint along z.
         frames: [Frame; 2],
-        /// Distance of the two origins, m, for [`LoopKind::Distance`]; otherwise zero.
+        /// Distance between the two origins, m, for [`LoopKind::Distance`]; otherwise zero.
         length: f64,
     },
     /// Coupling of two joints: `q_joint = ratio · q_leader + offset`.

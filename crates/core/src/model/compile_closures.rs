@@ -72,8 +72,8 @@ impl Model {
         Ok(Frame { name: name.to_owned(), body: *body, rot_kf, pos_kf })
     }
 
-    /// Returns the distance of the origins of two frames at zero joint positions, m, or an error that names
-    /// the loop `name` if it is too short.
+    /// Returns the distance between the origins of two frames at zero joint positions, m, or an error that
+    /// names the loop `name` if the distance is too short.
     fn distance_at_zero(&self, name: &str, frames: &[Frame; 2]) -> Result<f64, ModelError> {
         let [a, b] = [0, 1].map(|side| self.origin_at_zero(&frames[side]));
         let length = (b - a).norm();

@@ -165,7 +165,7 @@ pub struct Joint {
     pub child_pose: Isometry3<f64>,
     /// Limits of position, velocity and effort.
     pub limits: Limits,
-    /// Viscous friction, N m s/rad (N s/m).
+    /// Coefficient of viscous friction, N m s/rad (N s/m).
     pub damping: f64,
     /// Kinetic Coulomb friction, which acts while the joint moves, N m (N).
     pub friction: f64,

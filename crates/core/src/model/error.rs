@@ -294,7 +294,7 @@ pub(super) fn closest<'a>(candidates: &'a [String], name: &str) -> Option<&'a st
     near.or_else(part).map(String::as_str)
 }
 
-/// Returns the Levenshtein distance of two names, ignoring case.
+/// Returns the Levenshtein distance between two names, ignoring case.
 fn distance(a: &str, b: &str) -> usize {
     let (a, b): (Vec<char>, Vec<char>) =
         (a.to_lowercase().chars().collect(), b.to_lowercase().chars().collect());

@@ -12,9 +12,9 @@ use super::tree::Model;
 pub struct JointChange {
     /// Name of the joint.
     pub joint: String,
-    /// Viscous friction, N m s/rad (N s/m).
+    /// Coefficient of viscous friction, N m s/rad (N s/m).
     pub damping: Option<f64>,
-    /// Kinetic Coulomb friction, N m (N).
+    /// Kinetic Coulomb friction, which acts while the joint moves, N m (N).
     pub friction: Option<f64>,
     /// Largest torque (force) that static friction can hold, N m (N).
     pub static_friction: Option<f64>,
@@ -37,7 +37,9 @@ impl JointChange {
         joint.spring = self.spring(joint.spring);
     }
 
-    /// Returns the spring `old` with the new values. A spring without stiffness is removed.
+    /// Returns the spring `old` with the new values; `None` if both stiffnesses are then zero. If only a rest
+    /// position is given to a joint without a spring, the returned spring has no stiffness, which the model
+    /// builder rejects.
     fn spring(&self, old: Option<JointSpring>) -> Option<JointSpring> {
         let old = old.unwrap_or(JointSpring { stiffness: 0.0, cubic_stiffness: 0.0, rest_position: 0.0 });
         let stiffness = self.stiffness.unwrap_or(old.stiffness);

@@ -102,12 +102,12 @@ pub struct StepOutput {
 pub struct ContactOutput {
     /// Force on the second side at the start of the step, W axes, N.
     pub force: [f64; 3],
-    /// Power that the contact takes from the motion at the start of the step, W.
+    /// Power that the contact removes from the motion at the start of the step, W.
     pub power: f64,
     /// Time integrals over the step of the force and of its moment about the origin of W, on the second side,
     /// N s and N m s.
     pub impulse: [f64; 6],
-    /// Energy that the contact takes from the motion during the step, J.
+    /// Energy that the contact removes from the motion during the step, J.
     pub work: f64,
 }
 

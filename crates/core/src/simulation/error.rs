@@ -107,7 +107,7 @@ pub enum SimulationError {
     )]
     OtherTool { controller: String, tool: String },
     #[error(
-        "a reference of a frame is given, but the system has no tool; set tool to the frame that follows the reference"
+        "a reference for a frame is given, but the system has no tool; set tool to the frame that follows the reference"
     )]
     NeedsTool,
     #[error(

@@ -196,7 +196,7 @@ pub(crate) struct PyImpactLaw {
     /// Coefficient of restitution, dimensionless.
     #[pyo3(get)]
     restitution: f64,
-    /// Coefficient of friction, dimensionless.
+    /// Coefficient of both static and kinetic friction, dimensionless.
     #[pyo3(get)]
     friction: f64,
 }
@@ -230,7 +230,7 @@ impl PyImpactLaw {
 pub(super) enum Law {
     /// Compliant normal force.
     Compliant(NormalLaw),
-    /// Rigid impacts.
+    /// Law of rigid impacts.
     Impact(ImpactLaw),
 }
 

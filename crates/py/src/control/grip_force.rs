@@ -13,17 +13,17 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// force.
 ///
 /// The grip force is the mean of the normal forces on the fingers, which the contacts of the world exert. A
-/// finger consists of the links that a joint of the group moves, or that a joint moves which mimics one of
-/// them. At least one contact must involve each finger. Until all fingers touch, each joint follows its closing
-/// rate ``r``: ``tau = d (r - v)``, with the joint rate ``v``. Then the desired force ``F`` increases to
-/// ``force``, and ``tau = L (F + ∫ i (F - N) dt) - d v - p x``, with the measured grip force ``N`` and the
-/// lever ``L`` of the joint, which follows from the points and normals of the contacts. ``x`` is the
-/// displacement of the joint since all fingers touched, without its component along the closing motion. If a
-/// finger loses contact, the gripper closes at its closing rate again.
+/// finger consists of the links moved by a joint of the group, or by a joint that mimics one of these joints.
+/// At least one contact must involve each finger. Until all fingers touch, each joint follows its closing rate
+/// ``r``: ``tau = d (r - v)``, with the joint rate ``v``. Then the desired force ``F`` increases to ``force``,
+/// and ``tau = L (F + ∫ i (F - N) dt) - d v - p x``, with the measured grip force ``N`` and the lever ``L`` of
+/// the joint, which follows from the points and normals of the contacts. ``x`` is the displacement of the joint
+/// since all fingers touched, without its component along the closing motion. If a finger loses contact, the
+/// gripper closes at its closing rate again.
 ///
-/// The control has no reference. Its column in ``trace.tracking``, (T, 1), contains the force error ``force -
-/// N``, N. The tolerance of a :class:`Goal` is in N; the goal cannot be reached before the desired force equals
-/// ``force``.
+/// The control has no reference. Its column in ``trace.tracking``, (T, 1), contains the error of the force,
+/// ``force - N``, in N. The tolerance of a :class:`Goal` is in N as well; the goal cannot be reached before the
+/// desired force equals ``force``.
 ///
 /// Parameters
 /// ----------

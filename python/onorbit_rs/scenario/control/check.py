@@ -120,7 +120,7 @@ def _checked(law: Any, reference: Any, tool: str | None, scenario: Scenario, at:
 def _without_reference(law: ExternalController | GripForceController, reference: Any, at: Location) -> None:
     """Raise an error for a reference, or another key without effect, of a law that uses no reference."""
     is_external = isinstance(law, ExternalController)
-    why = "gets its motion from commands" if is_external else "closes a gripper to a force"
+    why = "gets its motion from commands" if is_external else "grips with a given force"
     for key, given in [
         ("reference", reference is not None),
         ("goal", is_external and getattr(law, "goal", None) is not None),

@@ -24,7 +24,7 @@ struct Term<R> {
 #[derive(Debug)]
 pub(super) struct Scratch<S> {
     single: Vec<Term<S>>,
-    /// Terms with one right-hand side per lane of a scalar whose type only the kernel knows.
+    /// Terms with one right-hand side per lane of a scalar type that the kernel chooses.
     columns: Box<dyn Any + Send + Sync>,
     /// `J`, row major `(m, nv)`, of robots with dense forward dynamics; empty for other robots.
     pub(super) dense: Vec<S>,
@@ -288,7 +288,7 @@ fn respond<S: Real, R: Real>(
     }
 }
 
-/// Quantities of a body in the scalar of the right-hand sides.
+/// Quantities of a body, converted to the scalar type of the right-hand sides.
 struct Lifted<R> {
     axis: Vec3<R>,
     offset: Vec3<R>,

@@ -90,7 +90,7 @@ impl Touching {
         Ok(Some(loading))
     }
 
-    /// Returns a bound on the rounding error of the distance of the pieces, m.
+    /// Returns a bound on the rounding error of the distance between the pieces, m.
     pub(super) fn rounding(&self, [a, b]: &[SideMotion; 2]) -> f64 {
         16.0 * f64::EPSILON * (a.frame.pos.norm() + b.frame.pos.norm() + self.smaller_reach())
     }

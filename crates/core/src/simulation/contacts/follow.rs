@@ -55,7 +55,7 @@ impl Contacts {
         }
     }
 
-    /// Ends the touches of those contacts in `points` of which no pieces rest on each other any more, and adds
+    /// Ends the touches of those contacts in `points` whose pieces no longer rest on each other, and adds
     /// records of their lift-offs at `t`, s, to `happened`.
     pub(super) fn end_touches(&mut self, t: f64, points: &[TouchedPoint]) {
         for point in points {

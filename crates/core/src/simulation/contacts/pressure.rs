@@ -10,7 +10,7 @@ use crate::spatial::{Force, Motion, Vec3};
 pub(super) struct Pressure {
     /// Sum of the normal forces, N.
     pub(super) force: f64,
-    /// Power that the force takes from the motion, W.
+    /// Power that the force removes from the motion, W.
     pub(super) power: f64,
     /// Power that the force dissipates, W.
     pub(super) loss: f64,

@@ -11,7 +11,7 @@ use crate::spatial::{Real, Vec3, dot};
 pub(super) struct ContactAt {
     /// For both sides, the index of the tree and the index of the frame in its model.
     pub(super) places: [(usize, usize); 2],
-    /// Point in W, m.
+    /// Position of the point in W, m.
     pub(super) at: Vec3<f64>,
     /// Unit vectors in W along which the three rows are measured: the normal from the first side to the second,
     /// and two tangents.

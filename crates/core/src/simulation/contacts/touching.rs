@@ -49,8 +49,7 @@ pub(in crate::simulation) struct Loading {
     pub(super) normal: Vec3<f64>,
     /// Point at which the forces act, m.
     pub(super) point: Vec3<f64>,
-    /// Sums over the normal forces; `None` unless the pieces press on each other or separate while they
-    /// overlap.
+    /// Sums of the normal forces; `None` if the pieces neither overlap nor exert forces under an impact law.
     pub(super) pressure: Option<Pressure>,
     /// Force on the second side, N.
     pub(super) force: Vec3<f64>,
@@ -71,7 +70,8 @@ pub(in crate::simulation) struct Loading {
 }
 
 impl Touching {
-    /// Returns the distance of the pieces and the forces in the present mode for their motion.
+    /// Computes the distance between the pieces and their forces, in the present mode and for the motions
+    /// `motions` of both sides.
     #[inline]
     pub(super) fn evaluate(
         &self,
@@ -82,8 +82,8 @@ impl Touching {
         Ok(self.loading(phase, &self.geometry(phase, motions)?, motions, state))
     }
 
-    /// Computes the distance of the pieces and their contact points. The contact points are the witness points
-    /// while pieces without an impact law do not touch.
+    /// Computes the distance between the pieces and their contact points. The contact points are the witness
+    /// points while pieces without an impact law do not touch.
     #[inline]
     pub(super) fn geometry(
         &self,
@@ -225,7 +225,7 @@ impl Loading {
         self.normal.scale_add(self.torque(), self.moment)
     }
 
-    /// Returns the power that friction takes from the motion, W.
+    /// Returns the power that friction removes from the motion, W.
     pub(super) fn friction_power(&self) -> f64 {
         let friction = self.friction.map_or(0.0, |friction| friction.force.dot(self.sliding));
         -friction - self.torque() * self.spin
