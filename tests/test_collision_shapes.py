@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from collision_robots import CUBE, CUBE_FACES, obj_file
 from contact_worlds import HARD, ball, moving, run
 from world_runs import built, check_line_of_error, data
 
@@ -114,6 +115,63 @@ def test_the_shapes_of_a_scenario_touch() -> None:
 )
 def test_errors_name_the_line(tmp_path: Path, old: str, new: str, line: int, words: str) -> None:
     check_line_of_error(built, (TEXT, old, new), line, words, tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("faces", "words"), [(CUBE_FACES[1:], "is open"), ([face[::-1] for face in CUBE_FACES], "is inside out")]
+)
+def test_a_mesh_with_a_defect_causes_one_warning_with_its_line(
+    tmp_path: Path, faces: list[tuple[int, int, int]], words: str
+) -> None:
+    obj_file(tmp_path / "cube.obj", CUBE, faces)
+    file = tmp_path / "mine.yaml"
+    mesh = "shape: {kind: mesh, file: cube.obj, scale: [0.1, 0.1, 0.1]}"
+    file.write_text(TEXT.replace("shape: {kind: cone, radius: 5 cm, height: 8 cm}", mesh))
+    with pytest.warns(UserWarning) as caught:
+        world = built(file)
+    (message,) = [str(one.message) for one in caught]
+    assert message.startswith(f"{file}:6: systems.a.collision[0]: ") and words in message
+    assert any(words in one for one in world.warnings)  # onorbit info prints these
+
+
+def ring_of_capsules(count: int, major_radius: float, minor_radius: float) -> oo.Model:
+    """Returns a body of 1.5 kg with ``count`` capsules along a circle about z; radii in m."""
+    model = oo.Model.rigid_body(1.5, np.diag([0.01, 0.01, 0.02]))
+    for angle in 2 * np.pi * np.arange(count) / count:
+        radial = np.array([np.cos(angle), np.sin(angle), 0.0])
+        along = np.array([-np.sin(angle), np.cos(angle), 0.0])
+        pose = at(*major_radius * radial)
+        pose[:3, :3] = np.stack([radial, np.cross(along, radial), along], axis=1)
+        model = model.with_collision(
+            "base", oo.Shape.capsule(minor_radius, 2 * major_radius * np.tan(np.pi / count)), pose=pose
+        )
+    return model
+
+
+@pytest.mark.parametrize(
+    ("shape", "height"), [(oo.Shape.cone(0.3, 0.3), 0.075), (oo.Shape.box(1.0, 1.0, 0.2), 0.112)]
+)
+def test_a_ring_of_capsules_rebounds_without_turning_where_it_touches_all_around(
+    shape: oo.Shape, height: float
+) -> None:
+    base = oo.Model.rigid_body(20.0, 0.4 * np.eye(3)).with_collision("base", shape)
+    ring = ring_of_capsules(12, 0.1, 0.01)
+    systems = [
+        oo.System("plate", base, base.neutral(), np.zeros(6)),
+        oo.System("ring", ring, [0, 0, height, 0, 0, 0, 1], [0, 0, -0.2, 0, 0, 0]),
+    ]
+    law = oo.HuntCrossley(1e6 / 12, 1.0, restitution=0.5, speed=0.2)
+    trace = run(
+        oo.World(systems, contacts=[oo.Contact("plate/base", "ring/base", normal=law, name="t")]), 0.1
+    )
+    touch = trace.contacts["t"]
+    assert touch.touches[-1] == 1 and touch.gap[-1] > 0.0
+    assert np.abs(trace["ring"].v[-1, [0, 1, 3, 4, 5]]).max() < 1e-12
+    energy = trace.kinetic_energy + touch.elastic + touch.dissipated
+    assert np.abs(energy - energy[0]).max() < 2e-8 * touch.elastic.max()
+    if shape.kind == "box":  # all normals are parallel to the motion
+        rebound = trace["ring"].v[-1, 2] - trace["plate"].v[-1, 2]
+        assert rebound == pytest.approx(0.5 * 0.2, rel=1e-6)
 
 
 def test_errors_in_python_give_the_value() -> None:

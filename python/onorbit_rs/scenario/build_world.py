@@ -33,6 +33,7 @@ from onorbit_rs.scenario.initial import Neighbour
 from onorbit_rs.scenario.locations import located
 from onorbit_rs.scenario.loops import closed_start
 from onorbit_rs.scenario.settings import ControlSettings
+from onorbit_rs.scenario.shape import MeshHull
 from onorbit_rs.scenario.watches import build_watches
 from onorbit_rs.scenario.world import WorldScenario
 
@@ -114,7 +115,8 @@ def build_world(scenario: WorldScenario, *, runs_code: bool = True) -> BuiltWorl
     given = (f"systems: {warning.message}" for warning in caught)
     messages = tuple(dict.fromkeys([*_warnings(systems), *given]))
     for message in messages:
-        warnings.warn(message, stacklevel=2)
+        if not _is_issued(scenario, message):
+            warnings.warn(message, stacklevel=2)
     return BuiltWorld(scenario, systems, around.orbit, around.earth, world, messages)
 
 
@@ -249,6 +251,16 @@ def _try_one_step(scenario: WorldScenario, simulation: _core.Simulation) -> None
         except SimulationError as stop:
             stop.message = f"in the first step: {stop.message}"
             raise
+
+
+def _is_issued(scenario: WorldScenario, message: str) -> bool:
+    """Return True for a mesh of ``collision`` with a defect, which caused a warning with its line before."""
+    return any(
+        f"the collision mesh {alone.folder / extra.shape.file} of the link" in message
+        for alone in scenario.scenarios.values()
+        for extra in alone.collision
+        if isinstance(extra.shape, MeshHull)
+    )
 
 
 def _warnings(systems: dict[str, Built]) -> Iterator[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -41,3 +42,14 @@ def located(scenario: Document, *at: str | int) -> Iterator[None]:
         error.message = f"{where}: {dotted(scenario.location(*at))}: {error.message}"
         error.located = True  # type: ignore[attr-defined]  # inner blocks are more specific
         raise
+
+
+@contextmanager
+def located_warnings(scenario: Document, *at: str | int) -> Iterator[None]:
+    """Issue the warnings of the block after it, with file, line and key in front of their messages."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        yield
+    where = f"{file_and_line(scenario.file, scenario.line_of(*at))}: {dotted(scenario.location(*at))}"
+    for warning in caught:
+        warnings.warn(f"{where}: {warning.message}", warning.category, stacklevel=3)

@@ -19,7 +19,7 @@ from onorbit_rs.robots.wording import Wording, worded
 from onorbit_rs.scenario.errors import invalid, shortened
 from onorbit_rs.scenario.fields import FilePath, Inertia, Length3, Mass, Positive
 from onorbit_rs.scenario.joint_properties import JointProperties
-from onorbit_rs.scenario.locations import dotted, located
+from onorbit_rs.scenario.locations import dotted, located, located_warnings
 from onorbit_rs.scenario.loops import add_loops
 from onorbit_rs.scenario.part import Part
 from onorbit_rs.scenario.pose import Pose
@@ -219,7 +219,8 @@ class Robot(PlainRobot):
             with located(scenario, "robot", "joints", name):
                 model = properties.apply(model, name)
         for index, extra in enumerate(scenario.collision):
-            with located(scenario, "collision", index):
+            at = ("collision", index)
+            with located(scenario, *at), located_warnings(scenario, *at):
                 model = extra.add_to(model, scenario.folder)
         return add_loops(scenario, model)
 
