@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -40,6 +41,13 @@ def test_every_number_of_workers_gives_the_same_table(tmp_path: Path) -> None:
     assert alone.column_names[:4] == ["case", "status", "success", "error"]
     assert alone["case"].to_pylist() == list(range(8))
     assert set(alone["status"].to_pylist()) == {"complete"}
+
+
+def test_a_missing_pyarrow_is_found_before_the_first_case(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    monkeypatch.setattr("onorbit_rs.campaigns.run._run", lambda *_, **__: pytest.fail("a case has run"))
+    with pytest.raises(InputError, match="pip install"):
+        oo.campaign(spin())
 
 
 def test_a_case_alone_has_the_numbers_of_the_campaign(tmp_path: Path) -> None:

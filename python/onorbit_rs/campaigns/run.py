@@ -19,7 +19,7 @@ from onorbit_rs.campaigns.plan import Plan, digest_of, plan_of
 from onorbit_rs.campaigns.progress import campaign_progress
 from onorbit_rs.campaigns.report import write_report
 from onorbit_rs.campaigns.storage import FAILURES, CampaignFolder, is_campaign
-from onorbit_rs.campaigns.table import check_conditions, rows_of, table_of
+from onorbit_rs.campaigns.table import arrow, check_conditions, rows_of, table_of
 from onorbit_rs.campaigns.write import write_campaign, write_cases, write_columns
 from onorbit_rs.common.progress import doing
 from onorbit_rs.displays.campaign import described, show_tables
@@ -78,10 +78,8 @@ def campaign(
     OnOrbitError
         Before any case runs: for an invalid campaign or scenario (``ScenarioError``), a column of ``keep`` or
         ``success`` that does not exist (``InputError``), a folder that is not empty, not writable or in use
-        (``OutputFolderError``), or SciPy or Dask if required but not installed (``InputError``). Errors of
-        single cases are not raised; they are in the column ``error``.
-    InputError
-        If pyarrow, which the table requires, is not installed.
+        (``OutputFolderError``), or if pyarrow, or SciPy or Dask where required, is not installed
+        (``InputError``). Errors of single cases are not raised; they are in the column ``error``.
     CampaignError
         If the cluster does not answer, or the connection to it is lost. The cases on the disk are kept.
     OutputFolderError
@@ -89,6 +87,7 @@ def campaign(
     """
     count = _checked_workers(workers)
     _check_cluster(cluster)
+    arrow()  # the table requires it after the last case
     loaded = load_campaign(source, cases=cases)
     plan = plan_of(loaded)
     check_nominal(plan, loaded)
