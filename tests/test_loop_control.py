@@ -209,16 +209,6 @@ def test_errors_in_a_scenario_name_their_place(
     assert "mine.yaml" in str(caught.value)
 
 
-def test_rollouts_refuse_computed_torque_with_loops() -> None:
-    servicer = oo.robots.load("two_arm_servicer")
-    looped = servicer.with_loops([oo.Loop("hands", "distance", "left_tool", "right_tool")])
-    q = looped.neutral()[None]
-    law = oo.ComputedTorque(looped, "left_tool")
-    pose = looped.frame_pose(q[0], "left_tool")
-    with pytest.raises(ControlError, match="the robot has closed loops or mimic joints"):
-        oo.rollout(looped, q, np.zeros((1, looped.nv)), steps=2, controller=law, reference=oo.Hold(pose))
-
-
 @pytest.mark.filterwarnings("ignore:event 'berth' did not happen")  # the run ends before the berthing
 def test_accelerations_do_not_jump_when_other_joints_become_independent(tmp_path: Path) -> None:
     changes = [

@@ -132,3 +132,29 @@ def test_a_distance_of_coinciding_points_starts_apart() -> None:
     assert np.abs(model.loop_errors(closed)).max() < 1e-15
     trace = oo.Simulation(model, q, np.zeros(9), time_step=1e-3).run(0.01)
     assert np.all(np.isfinite(trace.q)) and np.abs(model.loop_errors(trace.q)).max() < 1e-14
+
+
+@pytest.mark.parametrize("times", [(0.1, 0.1, 0.1), (0.1, 0.2, 0.3), (0.3, 0.1, 0.2)])
+def test_brakes_on_all_joints_of_a_loop_hold_it(times: tuple[float, ...]) -> None:
+    """The first brake stops the linkage; the others find joints at rest, whose rates are rounding errors."""
+    model = linkage().build().with_loops([closing()])
+    q = model.closed_configuration(start(model))
+    v = model.closed_velocity(q, np.array([0.01, 0.02, -0.01, 0.1, -0.2, 0.3, 1.0, 0.0, 0.0]))
+    names = model.joint_names
+    events: list[Any] = [
+        oo.Engage(f"hold_{name}", f"craft/{name}", at=t) for name, t in zip(names, times, strict=True)
+    ]
+    events += [oo.Disengage(f"free_{name}", f"craft/{name}", at=0.4) for name in names]
+    craft = oo.System("craft", model, q, v, actuators=[oo.Brake(name, name) for name in names])
+    trace: Any = oo.Simulation(oo.World([craft], events=events), time_step=1e-3).run(0.5)
+    first, *others = sorted((e for e in trace.events if e.kind == "engage"), key=lambda e: e.time)
+    assert first.energy_lost > 1e-3
+    assert all(e.energy_lost < 1e-15 and np.abs(e.impulse).max() < 1e-12 for e in others)
+    held = (trace.time > max(times)) & (trace.time < 0.4)
+    assert np.abs(trace.v[held, 6:]).max() < 1e-14
+    assert np.ptp(trace.q[held, 7:], axis=0).max() < 1e-14
+    assert np.abs(trace.momentum - trace.momentum[0]).max() < 1e-13
+    energy = trace.kinetic_energy + trace.dissipated
+    assert np.ptp(energy) < 1e-9 * energy[0]
+    assert trace.loops["closing"].opening.max() < 1e-14
+    assert np.abs(trace.v[trace.time > 0.45, 6:]).max() > 1e-2  # free again, and moved by the turning base

@@ -3,17 +3,18 @@
 
 mod common;
 
-use common::humanoid::{humanoid, start};
+use common::humanoid::{humanoid, humanoid_with_grippers, start};
 use nalgebra::{Matrix3, Vector3};
 use onorbit_core::control::{
-    Compliance, ComputedTorque, Control, ControlError, Controller, Goal, Interface, JointComputedTorque,
-    JointPid, Law, Observation,
+    Compliance, ComputedTorque, Control, ControlError, Controller, Goal, Interface, InternalForce,
+    JointComputedTorque, JointPid, Law, Observation,
 };
 use onorbit_core::dynamics::derivatives::{
     Derivatives, forward_dynamics_derivatives, free_floating_derivatives, inverse_dynamics_derivatives,
 };
 use onorbit_core::dynamics::{Data, FrameWrench};
 use onorbit_core::environment::{BodyWrench, GravityGradient};
+use onorbit_core::model::Model;
 use onorbit_core::orbit::{Kepler, MU_EARTH};
 use onorbit_core::reference::{Hold, JointHold};
 use onorbit_core::simulation::{Integrator, Simulation};
@@ -138,6 +139,78 @@ fn allocations_do_not_grow_with_the_number_of_steps() {
             let (few, many) = (allocations(&mut simulation, 100), allocations(&mut simulation, 1000));
             println!("control {control}, {integrator:?}: {few} allocations for 100 steps, {many} for 1000");
             assert_eq!(few, many);
+        }
+    }
+}
+
+/// Returns the controls of the humanoid with grippers, as many as possible of which use the solver for closed
+/// loops.
+fn looped_controls(case: usize, model: &Model) -> Vec<Control> {
+    let tool = model.frame("tool").unwrap();
+    let hold = Hold::new(Matrix3::identity(), Vector3::new(-0.1, -0.2, 0.5)).unwrap();
+    let task = || Law::TaskComputedTorque(Box::new(ComputedTorque::new(tool, 1.0, 2.0)), hold.clone().into());
+    let of_joints = |q: Vec<f64>| {
+        Law::JointComputedTorque(JointComputedTorque::new(1.0, 2.0), Arc::new(JointHold::new(q).unwrap()))
+    };
+    match case {
+        0 => Vec::new(),
+        1 => vec![Control::on_all_joints(model, task())],
+        2 => {
+            let mut control = Control::on_all_joints(model, of_joints(start(model)[7..].to_vec()));
+            let force = Some([0.5, -0.5, 0.0]);
+            control.internal_forces =
+                vec![InternalForce { closure: "closing".to_owned(), force, moment: None }];
+            vec![control]
+        }
+        3 => {
+            let compliance = Compliance {
+                frame: tool,
+                stiffness: ComputedTorque::diagonal([1.0; 6]),
+                damping: ComputedTorque::diagonal([0.1; 6]),
+                null_space_damping: 0.01,
+            };
+            let soft = Law::Compliance(Box::new(compliance), hold.clone().into());
+            vec![
+                Control::new("soft", (0..7).collect(), soft),
+                Control::new("jaw", vec![10], of_joints(vec![0.01])),
+            ]
+        }
+        _ => {
+            let position = Arc::new(JointHold::new(vec![0.02]).unwrap());
+            let pid = Law::Pid(JointPid::new(Interface::Position, 1.0, 0.1, 0.1), position);
+            vec![
+                Control::new("arm", (0..7).collect(), task()),
+                Control::new("crank", vec![7], of_joints(vec![1.0])),
+                Control::new("jaw", vec![10], pid),
+            ]
+        }
+    }
+}
+
+#[test]
+fn a_step_with_closed_loops_allocates_nothing() {
+    let model = Arc::new(humanoid_with_grippers());
+    let mut q = start(&model);
+    q[14..17].copy_from_slice(&[1.0, -0.8, 1.3]); // the loop is closed at the start
+    let mut v = vec![0.01; model.nv()];
+    v[13..].fill(0.0);
+    for case in 0..5 {
+        for integrator in [Integrator::Rk4, Integrator::SemiImplicitEuler] {
+            let mut simulation = Simulation::new(Arc::clone(&model), q.clone(), v.clone());
+            simulation.integrator = integrator;
+            simulation.systems[0].reference_start_tolerance = [10.0, 4.0];
+            simulation.systems[0].tool = model.frame("tool");
+            simulation.systems[0].controls = looped_controls(case, &model);
+            simulation.record_every = 1000;
+            let mut counts = [0; 2];
+            for (count, steps) in counts.iter_mut().zip([1000, 2000]) {
+                let before = COUNT.with(Cell::get);
+                let trace = simulation.run(steps as f64 * 1e-3).unwrap().only();
+                *count = COUNT.with(Cell::get) - before;
+                assert_eq!(trace.rows(), steps / 1000 + 1);
+            }
+            let [few, many] = counts;
+            println!("case {case}, {integrator:?}: {few} allocations for 1000 steps, {many} for 2000");
         }
     }
 }

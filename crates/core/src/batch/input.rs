@@ -53,11 +53,10 @@ pub enum InputError {
              'base', or use a Simulation"
     )]
     NeedsOrbit,
-    #[error(
-        "the robot has closed loops or mimic joints, but a rollout supports ComputedTorque only without them; use a \
-         Simulation, or give the rollout torques"
-    )]
-    LoopedTask,
+    #[error("{problem}")]
+    Controller { problem: String },
+    #[error("state {state}: {problem}")]
+    OpenStart { state: usize, problem: String },
     #[error("threads is 0; it must be at least 1; omit it to use all cores")]
     NoThreads,
     #[error(

@@ -23,13 +23,13 @@ pub struct InternalForce {
 impl InternalForce {
     /// Returns the constraint rows of `closure` with a commanded force or moment: the index of each within
     /// the closure and its value, N or N m.
-    pub(super) fn rows(&self, closure: &Closure) -> Vec<(usize, f64)> {
+    pub(super) fn rows<'a>(&'a self, closure: &'a Closure) -> impl Iterator<Item = (usize, f64)> + 'a {
         let directions = closure.directions().iter().enumerate();
-        let value = |(row, &(axis, is_moment)): (usize, &(usize, bool))| {
+        let value = move |(row, &(axis, is_moment)): (usize, &(usize, bool))| {
             let part = if is_moment { self.moment } else { self.force };
             part.map(|part| (row, part[axis]))
         };
-        directions.filter_map(value).collect()
+        directions.filter_map(value)
     }
 
     /// Checks the force for the control with the name `control`. `captures` are the names of the captures

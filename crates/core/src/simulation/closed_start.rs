@@ -15,47 +15,58 @@ const ACCEPTED: f64 = 1e-6;
 const CLOSED: f64 = 1e-11;
 
 impl System {
-    /// Returns the initial configuration and velocity with all loops closed: those nearest to the given state
-    /// in the metric of the kinetic energy. Mimic joints that start at zero follow their leaders. Joints that
+    /// Returns the initial configuration and velocity with all loops closed; see [`closed_start`]. Joints that
     /// brakes hold rigidly keep the rate zero.
     ///
     /// # Errors
-    /// [`SimulationError::OpenLoop`] for a loop without `project` whose opening exceeds 1e-6 m or rad, or
-    /// changes by more than 1e-6 m/s or rad/s; [`SimulationError::OpenMimic`] for a mimic joint with such an
-    /// error; [`SimulationError::CannotClose`] for loops that cannot be closed together.
+    /// Those of [`closed_start`].
     pub(super) fn closed_start(&self) -> Result<[Vec<f64>; 2], SimulationError> {
-        let (model, mut q, mut v) = (&*self.model, self.q.clone(), self.v.clone());
-        if model.closures().is_empty() {
-            return Ok([q, v]);
-        }
-        follow_leaders(model, &mut q, &mut v);
-        let (mut data, mut loops) = (Data::new(model), ClosedLoops::new(model, model.closures()));
-        closure_errors(model, &mut data, &mut loops, &q);
-        check_open(&loops, loops.errors(), ["m", "rad"])?;
-        close_loops(model, &mut data, &mut loops, &mut q);
-        let is_open = |i: &usize| loops.magnitudes(*i, loops.errors()).iter().any(|error| *error > CLOSED);
-        let open: Vec<usize> = (0..loops.closures().len()).filter(is_open).collect();
-        if !open.is_empty() {
-            let describe = |i: usize| {
-                let open = opening(loops.magnitudes(i, loops.errors()), ["m", "rad"]);
-                format!("'{}' stays open by {open}", loops.closures()[i].name)
-            };
-            let open: Vec<String> = open.into_iter().map(describe).collect();
-            return Err(SimulationError::CannotClose { loops: open.join(", ") });
-        }
-        kinematics(model, &mut data, &q, &v);
-        let rates = loops.rates(&data, &v);
-        check_open(&loops, &rates, ["m/s", "rad/s"])?;
-        // joints that brakes hold rigidly must start at rest
-        let mut held = vec![false; model.joint_count()];
+        let mut held = vec![false; self.model.joint_count()];
         let rigid = self.brakes.iter().filter(|brake| brake.is_engaged && brake.slip_torque.is_infinite());
         rigid.for_each(|brake| held[brake.joint] = true);
-        let locked = held.contains(&true).then_some((&held[..], &[][..]));
-        project_configuration(model, &mut data, &mut loops, &mut q, locked);
-        kinematics(model, &mut data, &q, &v);
-        project_velocity(model, &mut data, &mut loops, (&q, &mut v), locked);
-        Ok([q, v])
+        closed_start(&self.model, [self.q.clone(), self.v.clone()], &held)
     }
+}
+
+/// Returns a configuration and a velocity with all loops closed: those nearest to the given ones in the metric
+/// of the kinetic energy. Mimic joints that start at zero follow their leaders. `held` contains, for each joint,
+/// `(n,)`, whether it must start at rest.
+///
+/// # Errors
+/// [`SimulationError::OpenLoop`] for a loop without `project` whose opening exceeds 1e-6 m or rad, or
+/// changes by more than 1e-6 m/s or rad/s; [`SimulationError::OpenMimic`] for a mimic joint with such an
+/// error; [`SimulationError::CannotClose`] for loops that cannot be closed together.
+pub(crate) fn closed_start(
+    model: &Model,
+    [mut q, mut v]: [Vec<f64>; 2],
+    held: &[bool],
+) -> Result<[Vec<f64>; 2], SimulationError> {
+    if model.closures().is_empty() {
+        return Ok([q, v]);
+    }
+    follow_leaders(model, &mut q, &mut v);
+    let (mut data, mut loops) = (Data::new(model), ClosedLoops::new(model, model.closures()));
+    closure_errors(model, &mut data, &mut loops, &q);
+    check_open(&loops, loops.errors(), ["m", "rad"])?;
+    close_loops(model, &mut data, &mut loops, &mut q);
+    let is_open = |i: &usize| loops.magnitudes(*i, loops.errors()).iter().any(|error| *error > CLOSED);
+    let open: Vec<usize> = (0..loops.closures().len()).filter(is_open).collect();
+    if !open.is_empty() {
+        let describe = |i: usize| {
+            let open = opening(loops.magnitudes(i, loops.errors()), ["m", "rad"]);
+            format!("'{}' stays open by {open}", loops.closures()[i].name)
+        };
+        let open: Vec<String> = open.into_iter().map(describe).collect();
+        return Err(SimulationError::CannotClose { loops: open.join(", ") });
+    }
+    kinematics(model, &mut data, &q, &v);
+    let rates = loops.rates(&data, &v).to_vec();
+    check_open(&loops, &rates, ["m/s", "rad/s"])?;
+    let locked = held.contains(&true).then_some((held, &[][..]));
+    project_configuration(model, &mut data, &mut loops, &mut q, locked);
+    kinematics(model, &mut data, &q, &v);
+    project_velocity(model, &mut data, &mut loops, (&q, &mut v), locked);
+    Ok([q, v])
 }
 
 /// Replaces each zero position and each zero rate of a mimic joint by the value that its leader prescribes.

@@ -80,6 +80,7 @@ pub use attached::AttachedControl;
 pub use certificate::{Certificate, Check, PairChecks, certify};
 pub use checkpoint::Checkpoint;
 pub use checkpoint_error::CheckpointError;
+pub(crate) use closed_start::closed_start;
 pub use columns::{
     COLUMNS, CONTACTS, Column, Condition, LOOPS, Length, Part, REREFERENCED, TRACKING, WRENCHES, columns,
 };

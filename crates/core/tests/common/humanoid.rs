@@ -1,7 +1,7 @@
 //! The humanoid torso of the OnOrbitROS paper with one arm of seven joints.
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
-use onorbit_core::model::{Inertial, Joint, JointKind, Link, Model, ModelBuilder};
+use onorbit_core::model::{Inertial, Joint, JointKind, Link, Loop, LoopKind, Mimic, Model, ModelBuilder};
 
 /// Mass, kg, and inertia Ixx, Iyy, Izz, Ixy, Ixz, Iyz, kg m². Source: the paper, Table 1.
 const BODY: (f64, [f64; 6]) = (93.0, [18.6, 15.4, 4.1, -0.008, -0.027, 0.058]);
@@ -57,6 +57,40 @@ pub fn humanoid_with_idle_joint(change: impl Fn(&mut Joint)) -> Model {
     let idle = Joint::new("idle", JointKind::Revolute(Vector3::z()), Isometry3::identity());
     let link = Inertial { mass: 1e-12, com: Vector3::zeros(), inertia: Matrix3::identity() * 1e-12 };
     builder.add("torso", idle, Link::new("idle_link", Some(link))).unwrap();
+    builder.build().unwrap()
+}
+
+/// Returns the robot with two gripping parts at its tool: a four-bar linkage that the loop `closing` closes, and
+/// two jaws, the second of which mimics the first.
+pub fn humanoid_with_grippers() -> Model {
+    let mut builder = builder(|_| {});
+    let revolute = |name: &str, x: f64| {
+        Joint::new(name, JointKind::Revolute(Vector3::z()), Isometry3::translation(x, 0.0, -0.1))
+    };
+    let slider = |name: &str, y: f64| {
+        Joint::new(name, JointKind::Prismatic(Vector3::y()), Isometry3::translation(0.0, y, -0.15))
+    };
+    let rod =
+        |name: &str| Link::new(name, inertial((0.1, [1e-5, 1e-4, 1e-4, 0.0, 0.0, 0.0]), [0.03, 0.0, 0.0]));
+    let knee = Joint::new("knee", JointKind::Revolute(Vector3::z()), Isometry3::translation(0.05, 0.0, 0.0));
+    builder.add("arm_link_7", revolute("left_crank", 0.0), rod("left_rod")).unwrap();
+    builder.add("left_rod", knee, rod("coupler")).unwrap();
+    builder.add("arm_link_7", revolute("right_crank", 0.1), rod("right_rod")).unwrap();
+    builder.add("arm_link_7", slider("left_jaw", 0.02), rod("left_pad")).unwrap();
+    let mut follower = slider("right_jaw", -0.02);
+    follower.mimic = Some(Mimic { leader: "left_jaw".to_owned(), ratio: -1.0, offset: 0.0 });
+    builder.add("arm_link_7", follower, rod("right_pad")).unwrap();
+    let tip = |x: f64| Isometry3::translation(x, 0.0, 0.0);
+    builder
+        .close(Loop {
+            name: "closing".to_owned(),
+            kind: LoopKind::Revolute,
+            frames: ["coupler".to_owned(), "right_rod".to_owned()],
+            poses: [tip(0.1), tip(0.08)],
+            length: None,
+            project: true,
+        })
+        .unwrap();
     builder.build().unwrap()
 }
 

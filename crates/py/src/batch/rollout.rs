@@ -18,7 +18,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// Integrate many states of a robot without an environment.
 ///
 /// The joints are free, have given torques, or are moved by a computed-torque controller. The bits of the
-/// results do not depend on ``threads``.
+/// results do not depend on ``threads``. If the robot has closed loops or mimic joints, each run starts at the
+/// nearest state that closes them, as a simulation does.
 ///
 /// Parameters
 /// ----------
@@ -63,7 +64,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 ///     If only one of ``controller`` and ``reference`` is given, if ``tau`` is given as well, if the
 ///     controller is of another kind or for another robot, or if the reference is in the frame ``"lvlh"``.
 /// InputError, ShapeError
-///     If a number is invalid, the integrator is not one of those listed, or an array has the wrong shape.
+///     If a number is invalid, the integrator is not one of those listed, a state opens a loop that has
+///     ``project=False``, or an array has the wrong shape.
 #[pyfunction]
 #[pyo3(signature = (
     model, q0, v0, *, steps, time_step=1e-3, tau=None, controller=None, reference=None, integrator="rk4",

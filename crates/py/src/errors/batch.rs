@@ -31,7 +31,8 @@ impl IntoPython for InputError {
                 raise(py, "InputError", &message, &fields)
             }
             Self::NoThreads => raise(py, "InputError", &message, &fields!(py, "name": "threads", "got": 0)),
-            Self::NeedsOrbit | Self::LoopedTask => plain(py, "ControlError", &message),
+            Self::NeedsOrbit | Self::Controller { .. } => plain(py, "ControlError", &message),
+            Self::OpenStart { .. } => plain(py, "InputError", &message),
             Self::Orbit { orbit, source } => {
                 let error = source.clone().into_python(py);
                 for (name, value) in [("index", orbit.into_py_any(py)), ("message", message.into_py_any(py))]

@@ -174,7 +174,7 @@ impl LoopedDynamics {
     pub(super) fn add_force(&mut self, force: &InternalForce) {
         let closure = self.closures.iter().find(|(.., name)| name.as_ref() == Some(&force.closure));
         if let Some((closure, start, _)) = closure {
-            self.commanded.extend(force.rows(closure).into_iter().map(|(row, value)| (start + row, value)));
+            self.commanded.extend(force.rows(closure).map(|(row, value)| (start + row, value)));
         }
     }
 

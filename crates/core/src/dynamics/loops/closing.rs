@@ -39,9 +39,9 @@ pub fn close_loops(model: &Model, data: &mut Data<f64>, loops: &mut ClosedLoops<
 
 /// Performs Newton steps of limited length and returns true if they close the loops.
 fn newton(model: &Model, data: &mut Data<f64>, loops: &mut ClosedLoops<f64>, q: &mut [f64]) -> bool {
-    let mut delta = vec![0.0; model.nv()];
+    let (zeros, mut delta) = (vec![0.0; model.nv()], vec![0.0; model.nv()]);
     for _ in 0..NEWTON {
-        factorize(model, data, q, None, &mut delta);
+        factorize(model, data, q, None, (&zeros, &mut delta));
         loops.update_errors(data, q);
         if !loops.is_open(data) {
             return true;
@@ -59,14 +59,15 @@ fn newton(model: &Model, data: &mut Data<f64>, loops: &mut ClosedLoops<f64>, q: 
 ///
 /// Source: Nocedal and Wright, Numerical Optimization, 2006, section 10.3 (Levenberg-Marquardt method).
 fn descend(model: &Model, data: &mut Data<f64>, loops: &mut ClosedLoops<f64>, q: &mut [f64]) -> bool {
-    let (mut delta, mut kept, mut damping) = (vec![0.0; model.nv()], q.to_vec(), DAMPING);
+    let (zeros, mut delta) = (vec![0.0; model.nv()], vec![0.0; model.nv()]);
+    let (mut kept, mut damping) = (q.to_vec(), DAMPING);
     closure_errors(model, data, loops, q);
     let mut least = loops.squared_errors();
     for _ in 0..DAMPED {
         if least < CLOSE {
             return true;
         }
-        factorize(model, data, q, None, &mut delta);
+        factorize(model, data, q, None, (&zeros, &mut delta));
         loops.update_errors(data, q);
         loops.damped_correction(model, data, damping, &mut delta);
         limit(&mut delta);

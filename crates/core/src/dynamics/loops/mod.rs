@@ -55,6 +55,39 @@ pub struct ClosedLoops<S> {
     base: InverseArticulated<S>,
     scratch: Scratch<S>,
     joint_rows: JointRows<S>,
+    buffers: Buffers<S>,
+}
+
+/// Buffers that the projections and the refinement use, so that a step allocates nothing.
+#[derive(Clone, Debug)]
+struct Buffers<S> {
+    /// Change of a velocity or of a configuration, `(nv,)`.
+    change: Vec<S>,
+    /// Configuration after a change, `(nq,)`.
+    moved: Vec<S>,
+    /// Rates of the constraint errors, `(m,)`, m/s and rad/s.
+    rates: Vec<S>,
+    /// Constraint forces before a refinement, `(m,)`.
+    before: Vec<S>,
+    /// Generalized forces with those of the constraints, `(nv,)`.
+    applied: Vec<S>,
+    /// Zeros, `(nv,)`: the velocity and the generalized forces of a robot at rest.
+    zeros: Vec<S>,
+}
+
+impl<S: Real> Buffers<S> {
+    fn new(model: &Model, m: usize) -> Self {
+        let zeros = |count: usize| vec![S::of(0.0); count];
+        let (nq, nv) = (model.nq(), model.nv());
+        Self {
+            change: zeros(nv),
+            moved: zeros(nq),
+            rates: zeros(m),
+            before: zeros(m),
+            applied: zeros(nv),
+            zeros: zeros(nv),
+        }
+    }
 }
 
 impl<S: Real> ClosedLoops<S> {
@@ -76,6 +109,7 @@ impl<S: Real> ClosedLoops<S> {
             joint_rows: JointRows::default(),
             rows,
             supported,
+            buffers: Buffers::new(model, m),
         }
     }
 
@@ -126,9 +160,11 @@ impl<S: Real> ClosedLoops<S> {
 
     /// Returns the rates of the constraint errors, `J v`, `(m,)`, m/s and rad/s, at a velocity `v`, `(nv,)`,
     /// whose kinematics are in `data`.
-    pub fn rates(&mut self, data: &Data<S>, v: &[S]) -> Vec<S> {
+    pub fn rates(&mut self, data: &Data<S>, v: &[S]) -> &[S] {
         self.update_rows(data);
-        self.rows.iter().map(|row| row.rate(data, v)).collect()
+        let Self { rows, buffers: Buffers { rates, .. }, .. } = self;
+        rates.iter_mut().zip(rows).for_each(|(rate, row)| *rate = row.rate(data, v));
+        rates
     }
 
     /// Returns the pivots of the scaled matrix `A` in the last solution, `(m,)`, in the first SIMD lane: the

@@ -70,8 +70,9 @@ impl<S: Real> ClosedLoops<S> {
                 self.solve(model, data, locked)
             },
         );
-        let zeros = vec![S::of(0.0); if model.is_heavy_on_light() { model.nv() } else { 0 }];
+        let zeros = std::mem::take(&mut self.buffers.zeros);
         self.respond(model, data, (&zeros, &zeros, locked), delta);
+        self.buffers.zeros = zeros;
     }
 }
 
@@ -85,9 +86,9 @@ pub(crate) fn project_configuration<S: Real>(
     q: &mut [S],
     locked: Locked<'_>,
 ) {
-    let mut delta = vec![S::of(0.0); model.nv()];
-    let mut moved = q.to_vec();
-    factorize(model, data, q, locked, &mut delta);
+    let mut delta = std::mem::take(&mut loops.buffers.change);
+    let mut moved = std::mem::take(&mut loops.buffers.moved);
+    factorize(model, data, q, locked, (&loops.buffers.zeros, &mut delta));
     for _ in 0..CORRECTIONS {
         loops.update_errors(data, q);
         let is_open = loops.is_open(data);
@@ -107,6 +108,7 @@ pub(crate) fn project_configuration<S: Real>(
         );
         positions(model, data, q);
     }
+    (loops.buffers.change, loops.buffers.moved) = (delta, moved);
 }
 
 /// Changes the velocity `v` by `−M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁻¹ J v`, so that it satisfies the constraints. The change
@@ -120,34 +122,35 @@ pub(crate) fn project_velocity<S: Real>(
     (q, v): (&[S], &mut [S]),
     locked: Locked<'_>,
 ) {
-    let mut change = vec![S::of(0.0); v.len()];
-    let rates = loops.rates(data, v);
-    loops.correction(model, data, locked, |_, i| rates[i], &mut change);
+    let mut change = std::mem::take(&mut loops.buffers.change);
+    loops.rates(data, v);
+    loops.correction(model, data, locked, |loops, i| loops.buffers.rates[i], &mut change);
     v.iter_mut().zip(&change).for_each(|(v, change)| *v += *change);
     let is_repeated = loops.is_nearly_dependent();
     if S::any(is_repeated) {
         kinematics(model, data, q, v);
-        let rates = loops.rates(data, v);
-        loops.correction(model, data, locked, |_, i| rates[i], &mut change);
+        loops.rates(data, v);
+        loops.correction(model, data, locked, |loops, i| loops.buffers.rates[i], &mut change);
         for (v, change) in v.iter_mut().zip(&change) {
             *v = S::select(is_repeated, *v + *change, *v);
         }
     }
+    loops.buffers.change = change;
 }
 
-/// Computes the articulated-body inertias, or the factors of `M`, at the configuration `q`, at rest.
+/// Computes the articulated-body inertias, or the factors of `M`, at the configuration `q`, at rest. `zeros`,
+/// `(nv,)`, contains only zeros; `scratch`, `(nv,)`, is a buffer.
 pub(super) fn factorize<S: Real>(
     model: &Model,
     data: &mut Data<S>,
     q: &[S],
     locked: Locked<'_>,
-    scratch: &mut [S],
+    (zeros, scratch): (&[S], &mut [S]),
 ) {
-    let zeros = vec![S::of(0.0); model.nv()];
-    kinematics(model, data, q, &zeros);
+    kinematics(model, data, q, zeros);
     match locked {
-        Some((locked, _)) => locked_dynamics_recursion(model, data, &zeros, &zeros, locked, &[], scratch),
-        None => forward_dynamics_recursion(model, data, &zeros, &zeros, scratch),
+        Some((locked, _)) => locked_dynamics_recursion(model, data, zeros, zeros, locked, &[], scratch),
+        None => forward_dynamics_recursion(model, data, zeros, zeros, scratch),
     }
 }
 
@@ -168,8 +171,8 @@ pub fn close_velocity(
     q: &[f64],
     v: &mut [f64],
 ) {
-    let mut scratch = vec![0.0; model.nv()];
-    factorize(model, data, q, None, &mut scratch);
+    let (zeros, mut scratch) = (vec![0.0; model.nv()], vec![0.0; model.nv()]);
+    factorize(model, data, q, None, (&zeros, &mut scratch));
     kinematics(model, data, q, v);
     project_velocity(model, data, loops, (q, v), None);
 }

@@ -42,7 +42,9 @@ impl<S: Real> ClosedLoops<S> {
         if !S::any(is_refined) {
             return;
         }
-        let before = self.force.clone();
+        let mut before = std::mem::take(&mut self.buffers.before);
+        let mut applied = std::mem::take(&mut self.buffers.applied);
+        before.copy_from_slice(&self.force);
         S::enter(
             #[inline(always)]
             || {
@@ -57,11 +59,12 @@ impl<S: Real> ClosedLoops<S> {
                 }
             },
         );
-        let mut applied = tau.to_vec();
+        applied.copy_from_slice(tau);
         for (row, &before) in self.scratch.dense.chunks_exact(model.nv()).zip(&before) {
             applied.iter_mut().zip(row).for_each(|(sum, x)| *sum += *x * before); // τ + Jᵀ λ
         }
         self.respond(model, data, (v, &applied, locked), a);
         self.force.iter_mut().zip(&before).for_each(|(force, before)| *force += *before);
+        (self.buffers.before, self.buffers.applied) = (before, applied);
     }
 }

@@ -1,10 +1,14 @@
 //! Impacts of joints on the stops at their position limits.
 
-use crate::dynamics::{constrained_recursion, kinetic_energy};
+use crate::dynamics::{constrained_recursion, forward_dynamics_recursion, kinetic_energy};
 use crate::model::{BASE_NQ, BASE_NV};
 use crate::simulation::tree::Tree;
 use crate::simulation::tree_state::TreeState;
 use crate::spatial::{Force, Motion, Real};
+
+/// Mobility of a joint, relative to its mobility in the tree without loops and held joints, below which the joint
+/// counts as immobile.
+const IMMOBILE: f64 = 1e-10;
 
 impl<S: Real> Tree<'_, S> {
     /// Returns the index of the first joint that moves into its stop; `None` if there is none.
@@ -62,12 +66,17 @@ impl<S: Real> Tree<'_, S> {
     }
 
     /// Reverses the rate of joint `j` by an impulse, with the coefficient of restitution `e`; 0 stops the
-    /// joint. Returns the impulse, N m s or N s, and the energy lost, J. Requires and updates the kinematics
-    /// like [`Tree::resolve_impacts`].
+    /// joint. Returns the impulse, N m s or N s, and the energy lost, J; both are zero for a joint that loops and
+    /// other held joints already keep at rest, whose rate is a rounding error. Requires and updates the
+    /// kinematics like [`Tree::resolve_impacts`].
     pub(in crate::simulation) fn strike(&mut self, j: usize, e: f64, state: &mut TreeState<S>) -> (f64, f64) {
         let rate = state.v[BASE_NV + j].lane(0);
         let before = self.kinetic_energy(state);
-        let response = self.impulse_response(j, -rate.signum(), state);
+        let Some(response) = self.impulse_response(j, -rate.signum(), state) else {
+            state.v[BASE_NV + j] = S::of(0.0);
+            self.project_momentum(state);
+            return (0.0, 0.0);
+        };
         let impulse = -(1.0 + e) * rate / response;
         for (v, change) in state.v.iter_mut().zip(&self.scratch) {
             *v += *change * S::of(impulse.abs());
@@ -89,8 +98,9 @@ impl<S: Real> Tree<'_, S> {
     }
 
     /// Writes the change of velocity caused by a unit impulse with the sign `sign`, 1 or −1, at joint `j` to
-    /// `scratch`. Returns `(M⁻¹)_jj`, the change of the rate of that joint per unit impulse.
-    fn impulse_response(&mut self, j: usize, sign: f64, state: &TreeState<S>) -> f64 {
+    /// `scratch`. Returns `(M⁻¹)_jj`, the change of the rate of that joint per unit impulse; `None` if the joint
+    /// cannot move because of closed loops and held joints.
+    fn impulse_response(&mut self, j: usize, sign: f64, state: &TreeState<S>) -> Option<f64> {
         let n = self.model.joint_count();
         for body in &mut self.data.bodies {
             (body.velocity, body.external) = (Motion::zero(), Force::zero());
@@ -100,6 +110,11 @@ impl<S: Real> Tree<'_, S> {
         let mut impulse = at_rest.clone();
         impulse[BASE_NV + j] = S::of(sign);
         let Self { model, data, loops, modes, .. } = self;
+        let mut free = 0.0;
+        if !loops.is_empty() {
+            forward_dynamics_recursion(model, data, &at_rest, &impulse, &mut a);
+            free = a[BASE_NV + j].lane(0) * sign;
+        }
         let stop = |i: usize| modes.stop(i, state.q[BASE_NQ + i].lane(0));
         let rests_at_stop = |i: usize| stop(i) != 0.0 && state.v[BASE_NV + i].lane(0) == 0.0;
         let mut locked: Vec<bool> =
@@ -116,6 +131,6 @@ impl<S: Real> Tree<'_, S> {
         }
         let response = a[BASE_NV + j].lane(0) * sign;
         self.scratch = a;
-        response
+        (response > IMMOBILE * free).then_some(response)
     }
 }
