@@ -1,6 +1,7 @@
 //! Rows of the closed loops: the forces of their constraints and their openings.
 
 use super::equations::EquationsOfMotion;
+use super::loop_row::LoopRow;
 use super::members::Place;
 use super::run_state::RunState;
 use super::tree::Tree;
@@ -11,11 +12,11 @@ use crate::spatial::{Real, Scalar, Vec3};
 use crate::world::{Action, Event};
 
 impl<S: Real> Tree<'_, S> {
-    /// Returns, for every closed loop at `state`, its name in the tree and its row in the order of the parts
-    /// of [`LOOPS`](super::LOOPS). Requires the kinematics of `state`, the loads and the modes of the joints.
-    pub(super) fn loop_rows(&mut self, state: &TreeState<S>) -> Vec<(String, [f64; 11])> {
+    /// Adds the values of every closed loop at `state` to `rows`; `tree` is the index of this tree. Requires
+    /// the kinematics of `state`, the loads and the modes of the joints.
+    fn add_loop_rows(&mut self, tree: usize, state: &TreeState<S>, rows: &mut Vec<LoopRow>) {
         if self.loops.is_empty() {
-            return Vec::new();
+            return;
         }
         if let Some(clock) = state.clock {
             self.modes.accelerate_given(clock.lane(0));
@@ -28,20 +29,19 @@ impl<S: Real> Tree<'_, S> {
         let rot_wb = base_rotation(&state.q);
         let (loops, base) = (&self.loops, Vec3::from_slice(&state.q));
         let frames = |i: &usize| matches!(loops.closures()[*i].constraint, Constraint::Frames { .. });
-        let row = |i: usize| {
-            let (point, wrench) = loops.wrench(i, &self.data);
-            let errors: Vec<f64> = loops.errors().iter().map(|x| x.lane(0)).collect();
-            let mut row = [0.0; 11];
+        let row = |closure: usize| {
+            let (point, wrench) = loops.wrench(closure, &self.data);
+            let mut values = [0.0; 11];
             for (part, vector) in [rot_wb * wrench.linear, rot_wb * wrench.angular, rot_wb * point + base]
                 .into_iter()
                 .enumerate()
             {
-                vector.lane(0).write(&mut row[3 * part..]);
+                vector.lane(0).write(&mut values[3 * part..]);
             }
-            row[9..].copy_from_slice(&loops.magnitudes(i, &errors));
-            (loops.closures()[i].name.clone(), row)
+            values[9..].copy_from_slice(&loops.magnitudes(closure, loops.errors()));
+            LoopRow { tree, closure, values }
         };
-        (0..loops.closures().len()).filter(frames).map(row).collect()
+        rows.extend((0..loops.closures().len()).filter(frames).map(row));
     }
 }
 
@@ -53,32 +53,46 @@ impl<S: Scalar> RunState<'_, S> {
         if self.systems.iter().all(|run| run.recorder.trace.loops.is_empty()) {
             return;
         }
-        let Self { equations: EquationsOfMotion { trees, members, .. }, state, row_buffers, .. } = self;
-        let state = if is_within_step { &row_buffers.0 } else { &*state };
-        let rows: Vec<_> =
-            trees.iter_mut().zip(&state.trees).map(|(tree, state)| tree.loop_rows(state)).collect();
-        let trees: Vec<usize> = members.places.iter().map(|&place| members.tree_at(place)).collect();
-        for (number, tree) in trees.into_iter().enumerate() {
-            let own: Vec<(String, [f64; 11])> = rows[tree]
-                .iter()
-                .filter_map(|(name, row)| Some((self.own_loop_name(number, name)?, *row)))
-                .collect();
-            self.systems[number].recorder.record_loops(&own);
+        let mut rows = std::mem::take(&mut self.loop_rows);
+        rows.clear();
+        let state = if is_within_step { &self.row_buffers.0 } else { &self.state };
+        for (number, (tree, state)) in self.equations.trees.iter_mut().zip(&state.trees).enumerate() {
+            tree.add_loop_rows(number, state, &mut rows);
         }
+        for number in 0..self.systems.len() {
+            for column in 0..self.systems[number].recorder.trace.loops.len() {
+                let values = self.values_of_loop(number, column, &rows);
+                self.systems[number].recorder.trace.loops[column].values.extend_from_slice(&values);
+            }
+        }
+        self.loop_rows = rows;
+    }
+
+    /// Returns the values of a column of loops of a system; zeros if its loop is not closed.
+    fn values_of_loop(&self, system: usize, column: usize, rows: &[LoopRow]) -> [f64; 11] {
+        let EquationsOfMotion { trees, members, .. } = &self.equations;
+        let tree = members.tree_at(members.places[system]);
+        let column = &self.systems[system].recorder.trace.loops[column];
+        let is_own = |row: &&LoopRow| {
+            let name = &trees[tree].loops.closures()[row.closure].name;
+            self.own_loop_name(system, name).is_some_and(|name| name == column.name)
+        };
+        let found = rows.iter().filter(|row| row.tree == tree).find(is_own);
+        found.map_or([0.0; 11], |row| row.values)
     }
 
     /// Returns the name of the column of a loop in the trace of a system from the name of the loop in a tree;
     /// `None` if the loop belongs to another system.
-    pub(super) fn own_loop_name(&self, system: usize, name: &str) -> Option<String> {
+    pub(super) fn own_loop_name<'n>(&'n self, system: usize, name: &'n str) -> Option<&'n str> {
         if let Place::Tree(_) = self.equations.members.places[system] {
-            return Some(name.to_owned());
+            return Some(name);
         }
-        let prefix = format!("{}/", self.layout.systems()[system].name);
         let closed_by = || {
             let weld = self.connections.active.welds.iter().find(|weld| weld.loop_name() == name)?;
-            (weld.by.system == system).then(|| self.events.list[weld.capture].name.clone())
+            (weld.by.system == system).then(|| &*self.events.list[weld.capture].name)
         };
-        name.strip_prefix(&prefix).map(str::to_owned).or_else(closed_by)
+        let own = name.strip_prefix(&*self.layout.systems()[system].name);
+        own.and_then(|name| name.strip_prefix('/')).or_else(closed_by)
     }
 }
 

@@ -41,6 +41,7 @@ mod known;
 mod latch;
 mod local_reference;
 mod look_ahead;
+mod loop_row;
 mod loop_rows;
 mod members;
 mod modes;

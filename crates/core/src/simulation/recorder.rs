@@ -201,15 +201,6 @@ impl Recorder {
         }
     }
 
-    /// Adds the values of the closed loops, given by name, to the last row. Loops that are not closed have
-    /// zeros.
-    pub(super) fn record_loops(&mut self, rows: &[(String, [f64; 11])]) {
-        for column in &mut self.trace.loops {
-            let row = rows.iter().find(|(name, _)| *name == column.name);
-            column.values.extend_from_slice(row.map_or(&[0.0; 11], |(_, row)| row));
-        }
-    }
-
     /// Replaces the force and the power of the contact `name` in the last row by those in `done`.
     pub(super) fn record_contact_force(&mut self, name: &str, done: &ContactOutput) {
         let part = |name: &str| CONTACTS.parts.iter().find(|part| part.name == name).map(|part| part.start);

@@ -15,6 +15,7 @@ use super::estimates::Estimates;
 use super::events::Events;
 use super::group_balance::GroupBalance;
 use super::integrator::{Stages, StepSettings};
+use super::loop_row::LoopRow;
 use super::members::Place;
 use super::mover::Mover;
 use super::recording::Ledger;
@@ -76,6 +77,8 @@ pub(super) struct RunState<'a, S> {
     pub(super) row_buffers: (State<S>, Stages<S>),
     /// States of the trees in the last row, if systems share trees.
     pub(super) row_states: Vec<TreeState<S>>,
+    /// Buffer for the values of the closed loops in a row.
+    pub(super) loop_rows: Vec<LoopRow>,
     /// Distance of the base from the origin of W beyond which a system changes to a local reference orbit, m.
     pub(super) rereference_beyond: f64,
     pub(super) earth: Option<Arc<Earth>>,

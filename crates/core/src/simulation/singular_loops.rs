@@ -31,14 +31,18 @@ impl<S: Scalar> RunState<'_, S> {
         if !has_loops || self.mover.is_external() {
             return; // an external engine solves its own constraints
         }
-        let found: Vec<_> = self.equations.trees.iter_mut().map(|tree| tree.find_singular(t)).collect();
-        if found.iter().all(Vec::is_empty) {
+        let mut found = Vec::new(); // allocates only if a loop is found
+        for (number, tree) in self.equations.trees.iter_mut().enumerate() {
+            found.extend(tree.find_singular(t).into_iter().map(|(name, time)| (number, name, time)));
+        }
+        if found.is_empty() {
             return;
         }
         for number in 0..self.systems.len() {
             let members = &self.equations.members;
-            for (name, time) in &found[members.tree_at(members.places[number])] {
-                let Some(name) = self.own_loop_name(number, name) else { continue };
+            let own = members.tree_at(members.places[number]);
+            for (_, name, time) in found.iter().filter(|(tree, ..)| *tree == own) {
+                let Some(name) = self.own_loop_name(number, name).map(str::to_owned) else { continue };
                 let system = self.layout.systems()[number].name.clone();
                 let is_known = |known: &SingularLoop| (&known.system, &known.name) == (&system, &name);
                 if !self.singular_loops.iter().any(is_known) {

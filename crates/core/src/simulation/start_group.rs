@@ -158,6 +158,7 @@ impl Shared {
             rereference_beyond,
             earth: self.earth.clone(),
             singular_loops: Vec::new(),
+            loop_rows: Vec::new(),
         };
         run.find_latches();
         run.pass_brakes();

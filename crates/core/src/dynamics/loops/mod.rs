@@ -148,12 +148,12 @@ impl<S: Real> ClosedLoops<S> {
 
     /// Returns the magnitudes of the linear and of the angular entries of `x`, `(m,)`, that belong to a
     /// closure (index): m and rad for errors, N and N m for forces. The entry of a mimic joint counts as
-    /// angular.
-    pub fn magnitudes(&self, closure: usize, x: &[f64]) -> [f64; 2] {
+    /// angular. Of several SIMD lanes, the first one counts.
+    pub fn magnitudes(&self, closure: usize, x: &[S]) -> [f64; 2] {
         let own = &x[self.range_of(closure)];
         let mut squares = [0.0; 2];
-        for (x, is_angular) in own.iter().zip(rows::angular_rows(&self.closures[closure])) {
-            squares[usize::from(is_angular)] += x * x;
+        for (row, x) in own.iter().map(|x| x.lane(0)).enumerate() {
+            squares[usize::from(rows::is_angular(&self.closures[closure], row))] += x * x;
         }
         squares.map(f64::sqrt)
     }

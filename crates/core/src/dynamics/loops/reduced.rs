@@ -5,7 +5,7 @@ use super::{ClosedLoops, rows};
 use crate::dynamics::data::Data;
 use crate::dynamics::external::FrameWrench;
 use crate::dynamics::free_floating::{FreeFloating, free_floating};
-use crate::model::{Axis, Constraint, Model};
+use crate::model::{Axis, Closure, Constraint, Model};
 
 /// Reduced equations of a robot with closed loops, `M ÿ + c = Gᵀ τ + Q`, and task acceleration `ẍ = J ÿ + d` of one
 /// frame, in terms of the accelerations `ÿ` of independent joints.
@@ -97,7 +97,8 @@ impl<S> ClosedLoops<S> {
     /// Returns for each constraint, `(m,)`, whether it is treated as a length, m. The constraints of mimic
     /// joints are not, even if these joints are prismatic.
     pub fn length_rows(&self) -> Vec<bool> {
-        let rows = self.closures.iter().flat_map(rows::angular_rows);
-        rows.map(|is_angular| !is_angular).collect()
+        let is_length = |closure: &Closure, row: usize| !rows::is_angular(closure, row);
+        let rows = |closure| (0..Closure::rows(closure)).map(move |row| is_length(closure, row));
+        self.closures.iter().flat_map(rows).collect()
     }
 }

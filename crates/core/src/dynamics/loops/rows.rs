@@ -90,15 +90,13 @@ fn gap<S: Real>(frames: &[Frame; 2], placed: &[Placed<S>; 2], data: &Data<S>) ->
     (b - a) + (placed[1].offset - placed[0].offset)
 }
 
-/// Returns for each row of a closure whether it constrains a rotation; true also for mimic joints, even if
-/// they are prismatic.
-pub(super) fn angular_rows(closure: &Closure) -> Vec<bool> {
+/// Returns whether a row (index) of a closure constrains a rotation; true also for mimic joints, even if they
+/// are prismatic.
+pub(super) fn is_angular(closure: &Closure, row: usize) -> bool {
     match &closure.constraint {
-        Constraint::Frames { kind: LoopKind::Distance, .. } => vec![false],
-        Constraint::Frames { kind, .. } => {
-            kind.directions().iter().map(|(_, is_moment)| *is_moment).collect()
-        }
-        Constraint::Mimic { .. } => vec![true],
+        Constraint::Frames { kind: LoopKind::Distance, .. } => false,
+        Constraint::Frames { kind, .. } => kind.directions()[row].1,
+        Constraint::Mimic { .. } => true,
     }
 }
 

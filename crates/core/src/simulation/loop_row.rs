@@ -1,0 +1,11 @@
+//! Values of one closed loop in a row.
+
+/// Values of one closed loop.
+pub(super) struct LoopRow {
+    /// Index of the tree.
+    pub(super) tree: usize,
+    /// Index of the loop among the closures of the tree.
+    pub(super) closure: usize,
+    /// Values in the order of the parts of [`LOOPS`](super::LOOPS).
+    pub(super) values: [f64; 11],
+}
