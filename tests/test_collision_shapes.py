@@ -134,6 +134,22 @@ def test_a_mesh_with_a_defect_causes_one_warning_with_its_line(
     assert any(words in one for one in world.warnings)  # onorbit info prints these
 
 
+@pytest.mark.parametrize("beside", [1e-4, 1e-3, 1e-2])
+def test_the_energy_of_a_ball_on_a_torus_is_kept_near_its_axis(beside: float) -> None:
+    """The nearest point moves fast along the circle, so that some steps have to be repeated."""
+    ring = oo.Model.rigid_body(20.0, 0.4 * np.eye(3)).with_collision("base", oo.Shape.torus(0.09, 0.01))
+    systems = [
+        oo.System("ring", ring, ring.neutral(), np.zeros(6)),
+        moving("b", [beside, 0, 0.08], [0, 0, -0.2]),
+    ]
+    law = oo.HuntCrossley(1e6, restitution=0.6, speed=0.2)
+    trace = run(oo.World(systems, contacts=[oo.Contact("ring/base", "b/body", normal=law, name="t")]), 0.3)
+    touch = trace.contacts["t"]
+    assert touch.touches[-1] >= 1 and touch.elastic.max() > 1e-3
+    energy = trace.kinetic_energy + touch.elastic + touch.dissipated
+    assert np.abs(energy - energy[0]).max() < 1e-8 * touch.elastic.max()
+
+
 def ring_of_capsules(count: int, major_radius: float, minor_radius: float) -> oo.Model:
     """Returns a body of 1.5 kg with ``count`` capsules along a circle about z; radii in m."""
     model = oo.Model.rigid_body(1.5, np.diag([0.01, 0.01, 0.02]))

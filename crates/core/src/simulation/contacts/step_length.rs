@@ -140,9 +140,12 @@ impl Touching {
     }
 
     /// Returns the elastic energy at the largest depth of the present motion, J; zero for pieces that do not
-    /// press on each other, and for spheres, whose forces are smooth.
+    /// press on each other, and for spheres, whose forces are smooth unless the other piece is a torus: its
+    /// nearest point may then jump along the circle.
     pub(super) fn energy(&self) -> f64 {
-        let is_smooth = self.sides.iter().any(|side| matches!(side.shape, Shape::Sphere { .. }));
+        let any = |is: fn(&Shape) -> bool| self.sides.iter().any(|side| is(&side.shape));
+        let is_smooth = any(|shape| matches!(shape, Shape::Sphere { .. }))
+            && !any(|shape| matches!(shape, Shape::Torus { .. }));
         match &self.law {
             Some(law) if self.mode.phase == Phase::Pressing && !is_smooth => {
                 law.normal.elastic_energy(self.deepest)
