@@ -9,7 +9,7 @@ MATURIN := VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quie
 
 RUST := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
 
-.PHONY: help demo test test-rust test-python lint docs docs-publish bench bench-quick bench-rust bench-orbits bench-everything bench-spart bench-against certificate-campaign contact-campaign capture-campaign test-campaign test-notebooks fuzz soak test-ros2 test-peers notices wheel gallery clean
+.PHONY: help demo test test-rust test-python lint docs docs-publish bench bench-quick bench-rust bench-orbits bench-everything bench-spart bench-streaming bench-against certificate-campaign contact-campaign capture-campaign test-campaign test-notebooks fuzz soak test-ros2 test-peers notices wheel gallery clean
 
 help: ## prints this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 16
@@ -96,6 +96,9 @@ bench-everything: $(VENV)/.built ## compares humanoid_reach with all effects and
 
 bench-spart: $(VENV)/.built $(VENV)/.tested ## compares forward dynamics with SPART from PyPI's spartpy, alternated
 	$(BIN)/python benches/compare_spart.py
+
+bench-streaming: $(VENV)/.built ## memory and disk of 4000 s of humanoid_reach at 1 ms with every row; fails above 500 MB
+	$(BIN)/python benches/streamed_run.py
 
 certificate-campaign: $(VENV)/.built $(VENV)/.tested ## evaluates the certificates of 10 000 exact and 1000 defective runs; ARGS="--minutes 10"
 	$(BIN)/python tests/certificate_campaign.py $(ARGS)

@@ -1,4 +1,6 @@
-"""The memory of a run is estimated before its start: large runs cause a warning, too large runs an error."""
+"""The memory of a run is estimated before its start. Many rows are written to the folder during the run; if
+they stay in memory, they cause a warning or, if they do not fit, an error.
+"""
 
 from __future__ import annotations
 
@@ -43,11 +45,16 @@ def test_the_estimate_is_the_size_of_the_trace(name: str) -> None:
 def test_a_run_that_does_not_fit_is_refused_before_it_starts(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(memory, "_available_memory", lambda: 3e9)
-    with pytest.raises(InputError, match=r"records 4000001 rows, about .* but 3 GB are available") as error:
-        oo.run("free_tumble", tmp_path / "out", quiet=True, changes=LONG)
+    monkeypatch.setattr(memory, "_available_memory", lambda: 2e9)
+    what = (
+        r"records 4000001 rows, about .* but 2 GB are available; give the run a folder \(--out DIR, or out="
+    )
+    with pytest.raises(InputError, match=what) as error:
+        oo.run("free_tumble", quiet=True, changes=LONG)
     assert error.value.name == "record_every" and error.value.got == 1
-    assert not (tmp_path / "out" / "trace.npz").exists()
+    memory.check_size(built("free_tumble", LONG), tmp_path)  # with a folder, the rows are not kept in memory
+    with pytest.raises(InputError, match="but 2 GB are available; do not view the run"):
+        memory.check_size(built("free_tumble", LONG), tmp_path, is_viewed=True)
     every = int(str(error.value.expected).removeprefix(">= "))
     fitting = built("free_tumble", LONG | {"simulation.record_every": every})
     assert memory.estimated_memory(fitting, has_folder=True) < 500e6
@@ -61,7 +68,7 @@ def test_a_full_disk_is_noticed_before_the_run(tmp_path: Path, monkeypatch: pyte
     usage = type("Usage", (), {"free": 1e9})
     monkeypatch.setattr(memory.shutil, "disk_usage", lambda path: usage)
     with pytest.raises(
-        InputError, match=r"on the disk of .*, which has 1 GB; set simulation.record_every to"
+        InputError, match=r"on the disk of .*, which has 1 GB; free space, or set simulation.record_every to"
     ):
         memory.check_size(built("free_tumble", LONG), tmp_path)
 
@@ -70,7 +77,9 @@ def test_a_large_run_that_fits_causes_a_warning(monkeypatch: pytest.MonkeyPatch)
     run = built("free_tumble", LONG)
     for free in (1e12, None):
         monkeypatch.setattr(memory, "_available_memory", lambda free=free: free)
-        with pytest.warns(UserWarning, match="GB of memory; set simulation.record_every to 50"):
+        with pytest.warns(
+            UserWarning, match="GB of memory; give the run a folder .* set simulation.record_every to 50"
+        ):
             memory.check_size(run, None)
 
 

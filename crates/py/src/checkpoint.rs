@@ -3,15 +3,19 @@
 use crate::arrays::{Input, array_of, first_row};
 use crate::errors::{IntoPython, SimulationErrorExt, fields, plain, raise};
 use crate::world::Systems;
+use onorbit_core::model::Model;
 use onorbit_core::number_text::{count, short};
 use onorbit_core::simulation::{
     self, CONTACTS, LOOPS, NamedColumn, SimulationError, Stepper, TRACKING, Trace, WRENCHES,
 };
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyDict};
+use pyo3::types::{PyBool, PyDict, PySlice};
 use std::ffi::CString;
 use std::time::{Duration, Instant};
+
+/// Number of rows of a streamed run that are read from a checkpoint at once.
+const ROWS_AT_ONCE: usize = 1 << 14;
 
 /// State of a run from which :meth:`Simulation.run` and :meth:`Simulation.start` resume with identical bits.
 ///
@@ -60,21 +64,28 @@ impl PyCheckpoint {
 }
 
 impl PyCheckpoint {
-    /// Returns the checkpoint of the core, and the rows of the systems with these names.
+    /// Returns the checkpoint of the core, and the rows of the systems. If `is_streamed`, the rows are read in
+    /// blocks, and only the first and the last rows remain.
     pub(crate) fn read(
         &self,
         py: Python<'_>,
-        names: &[String],
+        systems: &Systems,
+        is_streamed: bool,
     ) -> PyResult<(simulation::Checkpoint, Vec<Trace>)> {
         let refuse =
             |error: simulation::CheckpointError| SimulationError::from(error).into_python_with(py, None);
         let checkpoint = simulation::Checkpoint::from_json(&self.state).map_err(refuse)?;
-        let rows = names.iter().map(|name| self.rows_of(py, &prefix(name, names.len())));
+        let named = systems.names.iter().zip(&systems.models);
+        let rows = named.map(|(name, model)| {
+            let prefix = prefix(name, systems.names.len());
+            self.rows_of(py, &prefix, is_streamed.then_some(&**model))
+        });
         Ok((checkpoint, rows.collect::<PyResult<_>>()?))
     }
 
-    /// Returns the rows of one system, in the columns whose names begin with `prefix`.
-    fn rows_of(&self, py: Python<'_>, prefix: &str) -> PyResult<Trace> {
+    /// Returns the rows of one system, in the columns whose names begin with `prefix`. If a model is given,
+    /// the rows are read in blocks, and only the first and the last rows remain.
+    fn rows_of(&self, py: Python<'_>, prefix: &str, streamed: Option<&Model>) -> PyResult<Trace> {
         let (mut rows, columns) = (Trace::default(), self.columns.bind(py));
         for (name, values) in columns {
             let name: String = name.extract()?;
@@ -87,14 +98,33 @@ impl PyCheckpoint {
             ];
             for (kind, named) in kinds {
                 if let Some(name) = kind.owner_of(name) {
-                    let width = Input::new(&values, name)?.shape().get(1).copied().unwrap_or(1);
+                    let first = values.get_item(PySlice::new(py, 0, 1, 1))?;
+                    let width = Input::new(&first, name)?.shape().get(1).copied().unwrap_or(1);
                     named.push(NamedColumn { name: name.to_owned(), width, values: Vec::new() });
                 }
             }
         }
-        for (name, column) in rows.columns_mut() {
-            if let Some(values) = columns.get_item(format!("{prefix}{name}"))? {
-                column.extend_from_slice(Input::new(&values, &name)?.data());
+        let Some(model) = streamed else {
+            for (name, column) in rows.columns_mut() {
+                if let Some(values) = columns.get_item(format!("{prefix}{name}"))? {
+                    column.extend_from_slice(Input::new(&values, &name)?.data());
+                }
+            }
+            return Ok(rows);
+        };
+        let most = columns.iter().filter(|(name, _)| name.to_string().starts_with(prefix));
+        let most = most.map(|(_, values)| values.len()).collect::<PyResult<Vec<_>>>()?;
+        let most = most.into_iter().max().unwrap_or(0);
+        for start in (0..most).step_by(ROWS_AT_ONCE) {
+            let some = PySlice::new(py, start as isize, (start + ROWS_AT_ONCE) as isize, 1);
+            for (name, column) in rows.columns_mut() {
+                if let Some(values) = columns.get_item(format!("{prefix}{name}"))? {
+                    column.extend_from_slice(Input::new(&values.get_item(&some)?, &name)?.data());
+                }
+            }
+            py.check_signals()?;
+            if rows.has_all_values() {
+                simulation::drop_checked_rows(&mut rows, 0, model);
             }
         }
         Ok(rows)

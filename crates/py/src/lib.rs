@@ -28,6 +28,7 @@ mod shared_run;
 mod simulation;
 mod stepper;
 mod stepper_advance;
+mod stepper_rows;
 mod torques;
 mod trace;
 mod world;

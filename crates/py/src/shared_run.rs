@@ -66,11 +66,12 @@ impl SharedRun {
         }
     }
 
-    /// Ends the current run, starts another run, and returns its number.
+    /// Ends the current run, starts another run, and returns its number. `streamed` is true if the caller
+    /// removes rows during the run.
     pub(crate) fn start(
         &self,
         py: Python<'_>,
-        duration: Option<f64>,
+        (duration, streamed): (Option<f64>, bool),
         from: Option<(Checkpoint, Vec<Trace>)>,
         wall_s: f64,
     ) -> PyResult<u64> {
@@ -86,6 +87,7 @@ impl SharedRun {
         let running = Running::try_new_or_recover(MutBorrow::new(*simulation), |simulation| {
             let simulation = simulation.borrow_mut();
             match from {
+                from if streamed => simulation.start_streaming(duration, from),
                 None => simulation.start(duration),
                 Some((checkpoint, rows)) => simulation.resume(duration, checkpoint, rows),
             }

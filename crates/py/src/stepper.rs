@@ -1,7 +1,7 @@
 //! The class `Stepper`: a run that the caller advances.
 
 use crate::arrays::constant;
-use crate::checkpoint::{PyCheckpoint, Since, add_columns, checkpoint_of, columns_since, prefix};
+use crate::checkpoint::{PyCheckpoint, Since, checkpoint_of};
 use crate::errors::SimulationErrorExt;
 use crate::interrupt::period;
 use crate::shared_run::SharedRun;
@@ -315,57 +315,6 @@ impl PyStepper {
         let is_complete =
             self.with(py, |stepper| stepper.duration().is_none_or(|end| stepper.time() == end))?;
         self.end(py, &mut self.run.lock(py)?, is_complete)
-    }
-
-    /// Return the rows recorded so far as columns, without a row at the current time.
-    ///
-    /// Parameters
-    /// ----------
-    /// since : int or dict of int, optional
-    ///     Index of the first row, at most the number of rows; default: 0. In a world, also a dict by system.
-    ///
-    /// Returns
-    /// -------
-    /// dict of array
-    ///     Array (rows, width) of each column of the trace, by the name of the column and in its unit. In a
-    ///     world of several systems, the names are paths such as ``chaser/q``.
-    #[pyo3(signature = (since=Since::Every(0)), text_signature = "($self, since=0)")]
-    fn columns(&self, py: Python<'_>, since: Since) -> PyResult<Py<PyDict>> {
-        let since = since.rows(py, &self.systems)?;
-        let columns = self.with(py, |stepper| match stepper.has_ended() {
-            true => Err(ended(py)),
-            false => columns_since(py, stepper, &self.systems.names, &since),
-        })??;
-        Ok(columns.unbind())
-    }
-
-    /// Return the row at the current time as columns, as if the run ended now. The cost does not depend on
-    /// the number of rows of the run.
-    ///
-    /// Returns
-    /// -------
-    /// dict of array
-    ///     Columns (1, width), named as those of :meth:`columns`.
-    fn present(&self, py: Python<'_>) -> PyResult<Py<PyDict>> {
-        let rows = self.try_with(py, |stepper| stepper.present_rows())?;
-        let columns = PyDict::new(py);
-        for (name, row) in self.systems.names.iter().zip(&rows) {
-            add_columns(py, &columns, &prefix(name, rows.len()), row, 0)?;
-        }
-        Ok(columns.unbind())
-    }
-
-    /// Delete all recorded rows but the first and the last ones, which limits the memory of a long run.
-    ///
-    /// The motion does not change. Later checkpoints cannot be resumed, because rows are missing. If every
-    /// step is recorded, the certificate omits the checks that compare successive steps.
-    ///
-    /// Parameters
-    /// ----------
-    /// keep : int
-    ///     Number of last rows of each system that are kept.
-    fn drop_rows(&self, py: Python<'_>, keep: usize) -> PyResult<()> {
-        self.with(py, |stepper| stepper.drop_rows(keep))
     }
 
     /// Return a checkpoint, from which :meth:`Simulation.start` resumes with identical bits.

@@ -11,6 +11,7 @@ import hashlib
 import json
 import os
 import warnings
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import quote
@@ -34,12 +35,21 @@ _MOST = 1 << 28
 """Largest size of ``state.json``, bytes; it contains the state of the controllers."""
 
 
+_CHUNK = 1 << 22
+"""Number of bytes that are read from a column at once."""
+
+
 class SavedCheckpoint(NamedTuple):
     """A checkpoint read from a folder, with the number of rows and the running digest of each column."""
 
     checkpoint: Checkpoint
     rows: dict[str, int]
     digests: dict[str, _Hash]
+
+    def in_memory(self) -> Checkpoint:
+        """Return the checkpoint with all of its rows in memory."""
+        columns = {name: column[:] for name, column in self.checkpoint.columns.items()}
+        return _core.Checkpoint(self.checkpoint.state, columns, wall_s=self.checkpoint.wall_s)
 
 
 class CheckpointWriter:
@@ -60,9 +70,36 @@ class CheckpointWriter:
         OutputInUseError
             If another process has locked the folder.
         """
+        return self._warning_once(lambda: self._write(checkpoint))
+
+    def rows_of(self, prefix: str) -> int:
+        """Return the number of rows in the files of a system, given the prefix of its columns."""
+        return self._rows.get(f"{prefix}time", 0)
+
+    def file_of(self, column: str) -> Path:
+        """Return the file of a column."""
+        return self._path / _file_name(column)
+
+    def append(self, columns: Mapping[str, Any], *, must: bool = False) -> bool:
+        """Write rows without a checkpoint; return False, after one warning, if they cannot be written.
+
+        Raises
+        ------
+        OutputFolderError
+            If the rows cannot be written and ``must`` is True.
+        OutputInUseError
+            If another process has locked the folder.
+        """
+        if not must:
+            return self._warning_once(lambda: self._append_rows(columns))
+        with output_errors(self._path):
+            self._append_rows(columns)
+        return True
+
+    def _warning_once(self, write: Callable[[], object]) -> bool:
         try:
             with output_errors(self._path):
-                self._write(checkpoint)
+                write()
         except OutputInUseError:
             raise
         except OnOrbitError as error:
@@ -70,27 +107,41 @@ class CheckpointWriter:
                 self._has_warned = True
                 warnings.warn(
                     f"{error}; the run continues without this checkpoint and tries again at the next one",
-                    UserWarning, stacklevel=2,
+                    UserWarning, stacklevel=3,
                 )  # fmt: skip
             return False
         return True
 
-    def _write(self, checkpoint: Checkpoint) -> None:
-        """Append the new rows, then replace the state, which contains the number of valid rows."""
-        files = {name: _file_name(name) for name in checkpoint.columns}
+    def _append_rows(self, given: Mapping[str, Any], *, sync: bool = False) -> dict[str, Any]:
+        """Append rows to the files of the columns; return the entries of the columns for the state."""
+        files = {name: _file_name(name) for name in given}
         self._folder.expect_checkpoint((STATE, *files.values()))
         columns: dict[str, dict[str, int | str]] = {}
         counts: dict[str, int] = {}
         digests: dict[str, _Hash] = {}
-        for name, rows in checkpoint.columns.items():
+        for name, rows in given.items():
             new_rows, width = rows.shape
             before = self._rows.get(name, 0)
             content = np.ascontiguousarray(rows, dtype="<f8").tobytes()
-            _append(self._path / files[name], content, after=8 * before * width)
+            _append(self._path / files[name], content, after=8 * before * width, sync=sync)
             counts[name] = before + new_rows
             digests[name] = self._digests.get(name, hashlib.sha256()).copy()
             digests[name].update(content)
             columns[name] = {"rows": counts[name], "width": width, "sha256": digests[name].hexdigest()}
+        self._rows, self._digests = counts, digests
+        return columns
+
+    def _write(self, checkpoint: Checkpoint) -> None:
+        """Append the new rows, then replace the state, which contains the number of valid rows."""
+        rows, digests = self._rows, self._digests
+        try:
+            self._write_state(checkpoint, self._append_rows(checkpoint.columns, sync=True))
+        except BaseException:  # the next checkpoint contains these rows again
+            self._rows, self._digests = rows, digests
+            raise
+
+    def _write_state(self, checkpoint: Checkpoint, columns: dict[str, Any]) -> None:
+        """Replace the state."""
         record = {
             "fingerprint": self._digest,
             "columns": columns,
@@ -107,7 +158,6 @@ class CheckpointWriter:
         sync_folder(self._path)
         self._folder.replace(f"{CHECKPOINT}/{STATE}", content)
         sync_folder(self._path)
-        self._rows, self._digests = counts, digests
 
 
 def has_checkpoint(folder: Path) -> bool:
@@ -116,7 +166,7 @@ def has_checkpoint(folder: Path) -> bool:
 
 
 def read_checkpoint(folder: Path, digest: str) -> SavedCheckpoint:
-    """Read the checkpoint of an output folder.
+    """Read the checkpoint of an output folder, whose columns are read when they are sliced.
 
     Raises
     ------
@@ -193,8 +243,10 @@ def _file_name(column: str) -> str:
     return f"{quote(column, safe=' ')}.f64"
 
 
-def _append(file: Path, content: bytes, *, after: int) -> None:
+def _append(file: Path, content: bytes, *, after: int, sync: bool) -> None:
     """Write rows at the byte offset ``after``, replacing invalid rows of a run that was killed.
+
+    With ``sync``, wait until all rows of the file are on the disk.
 
     Raises a CheckpointError if the file is shorter than ``after``.
     """
@@ -210,21 +262,41 @@ def _append(file: Path, content: bytes, *, after: int) -> None:
         left = memoryview(content)
         while left:
             left = left[stream.write(left) :]
-        os.fsync(stream.fileno())
+        if sync:
+            os.fsync(stream.fileno())
 
 
 def _column(file: Path, rows: int, width: int) -> tuple[Any, _Hash]:
-    """Return the valid rows of a column, and their running digest."""
-    needed = rows * width
+    """Return the valid rows of a column, which are read when they are sliced, and their running digest."""
+    needed, digest = rows * width, hashlib.sha256()
     with open_to_read(file) as stream:
         size = stream.seek(0, os.SEEK_END)
         if min(rows, width) < 0 or size < 8 * needed:
             raise ValueError(f"it contains {count(size // 8, 'number', 'numbers')}, expected {needed}")
         stream.seek(0)
-        content = stream.read(8 * needed)
-    if len(content) != 8 * needed:
-        raise ValueError(f"it ends after {len(content)} of {8 * needed} bytes")
-    return np.frombuffer(content, dtype="<f8").reshape(rows, width), hashlib.sha256(content)
+        left = 8 * needed
+        while left and (part := stream.read(min(left, _CHUNK))):
+            digest.update(part)
+            left -= len(part)
+    if left:
+        raise ValueError(f"it ends after {8 * needed - left} of {8 * needed} bytes")
+    return _FileColumn(file, rows, width), digest
+
+
+class _FileColumn:
+    """Column (rows, width) that is read from its file in slices."""
+
+    def __init__(self, file: Path, rows: int, width: int) -> None:
+        self.file, self.rows, self.width = file, rows, width
+
+    def __len__(self) -> int:
+        return self.rows
+
+    def __getitem__(self, wanted: Any) -> Any:
+        start, stop, _ = wanted.indices(self.rows)
+        numbers = max(stop - start, 0) * self.width
+        found = np.fromfile(self.file, dtype="<f8", count=numbers, offset=8 * start * self.width)
+        return found.reshape(-1, self.width)
 
 
 def _refused(message: str, path: Path) -> CheckpointError:

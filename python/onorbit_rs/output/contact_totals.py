@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from onorbit_rs.common.blocks import largest
 from onorbit_rs.common.printable import json_value
 
 if TYPE_CHECKING:
@@ -27,12 +28,12 @@ def contact_totals(trace: WorldTrace) -> list[Summary]:
             first.setdefault(record.name, record.time)
     found: list[Summary] = []
     for name, contact in trace.contacts.items():
-        touches = float(np.asarray(contact.touches)[-1])
+        touches = float(contact.touches[-1])
         numbers = {
-            "normal_force_max_n": float(np.asarray(contact.largest_force)[-1]),
-            "impulse_ns": float(np.linalg.norm(np.asarray(contact.impulse)[-1])),
-            "dissipated_j": float(np.asarray(contact.dissipated)[-1]),
-            "gap_min_m": float(np.min(np.asarray(contact.gap))),
+            "normal_force_max_n": float(contact.largest_force[-1]),
+            "impulse_ns": float(np.linalg.norm(contact.impulse[-1])),
+            "dissipated_j": float(contact.dissipated[-1]),
+            "gap_min_m": -float(largest(np.negative, contact.gap)),
         }
         entry: Summary = {"name": name, "first_touch_down_s": first.get(name), "touches": int(touches)}
         found.append(entry | {key: json_value(value) for key, value in numbers.items()})

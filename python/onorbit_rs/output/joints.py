@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs import _core
+from onorbit_rs.common.blocks import blocks, largest
 from onorbit_rs.common.coordinates import JOINTS_Q, JOINTS_V
 from onorbit_rs.scenario.control import (
     ExternalController,
@@ -36,7 +37,7 @@ def joint_loads(trace: Trace, built: Built) -> Summary:
 
     Entries of a kind of joint that the robot lacks are omitted.
     """
-    tau, rates = np.abs(np.asarray(trace.tau)), np.abs(np.asarray(trace.v)[-1, JOINTS_V])
+    tau, rates = _largest(trace.tau), np.abs(np.asarray(trace.v[-1])[JOINTS_V])
     loads: Summary = {}
     for is_prismatic, load, rate in (
         (False, "joint_torque_max_nm", "joint_rate_final_max_rad_s"),
@@ -44,7 +45,7 @@ def joint_loads(trace: Trace, built: Built) -> Summary:
     ):
         columns = _are_prismatic(built, None) == is_prismatic
         if columns.any():
-            loads |= {load: tau[:, columns].max(), rate: rates[columns].max()}
+            loads |= {load: tau[columns].max(), rate: rates[columns].max()}
     return loads
 
 
@@ -54,7 +55,7 @@ def efforts_at_limit(trace: Trace, built: Built) -> Summary:
     The limit is that of the controller or, if the controller has no limit, that of the robot. Without such a
     controller, there is no entry.
     """
-    names, tau = list(built.model.joint_names), np.abs(np.asarray(trace.tau)).max(axis=0)
+    names, tau = list(built.model.joint_names), _largest(trace.tau)
     limited = (JointPidController, GripForceController)
     laws = [law for law in built.scenario.laws if isinstance(law, limited)]
     reached = set()
@@ -67,25 +68,31 @@ def efforts_at_limit(trace: Trace, built: Built) -> Summary:
     return {"joint_efforts_at_limit": ", ".join(names[column] for column in sorted(reached))} if laws else {}
 
 
+def _largest(values: Any) -> Floats:
+    """Return the largest magnitude in each column of ``values``, (T, n); 0 without rows."""
+    found: Floats = largest(np.abs, values) if len(values) else np.zeros(np.shape(values)[1])
+    return found
+
+
 def largest_fractions(values: Floats, limits: Sequence[float | None]) -> Floats:
     """Return the largest magnitude in each column of ``values``, (T, n), as a fraction of its limit, (n,).
 
     The fraction is 0 for columns without a limit. A limit of zero means no limit, because exporters write
     zero for unknown limits.
     """
-    largest = np.abs(values).max(axis=0, initial=0.0)
-    fractions = [value / limit if limit else 0.0 for value, limit in zip(largest, limits, strict=True)]
+    found = _largest(values)
+    fractions = [value / limit if limit else 0.0 for value, limit in zip(found, limits, strict=True)]
     return np.array(fractions, dtype=np.float64)
 
 
 def rate_fractions(trace: Trace, model: Model) -> Floats:
     """Return the largest rate of each joint, relative to its limit, (n,); 0 without a limit."""
-    return largest_fractions(np.asarray(trace.v)[:, JOINTS_V], [joint.velocity for joint in model.joints])
+    return largest_fractions(trace.v[:, JOINTS_V], [joint.velocity for joint in model.joints])
 
 
 def effort_fractions(trace: Trace, model: Model) -> Floats:
     """Return the largest effort of each joint relative to its limit, (n,); 0 without a limit."""
-    return largest_fractions(np.asarray(trace.tau), [joint.effort for joint in model.joints])
+    return largest_fractions(trace.tau, [joint.effort for joint in model.joints])
 
 
 def loads_exceeded(trace: Trace, model: Model) -> Summary:
@@ -111,7 +118,9 @@ def joint_errors(key: str, errors: Floats, built: Built, wanted: list[str] | Non
     prismatic = _are_prismatic(built, wanted)
     units = {"rad": ~prismatic, "m": prismatic}
     return {
-        f"{key}_joint_error_max_{unit}": np.abs(errors[:, columns]).max()
+        f"{key}_joint_error_max_{unit}": largest(
+            lambda rows, columns=columns: np.abs(rows[:, columns]), errors
+        ).max()
         for unit, columns in units.items()
         if columns.any()
     }
@@ -127,12 +136,14 @@ def single_errors(trace: Trace, built: Built) -> Summary:
     if not isinstance(law, JointLaw) or not has_positions or not built.model.joints:
         return {}
     if isinstance(law, ExternalController):
-        return joint_errors("tracking", np.asarray(trace.tracking["control"]), built)
-    joints = np.asarray(trace.q)[:, JOINTS_Q]
-    desired = joints[0]  # without a reference, the joints are held at their initial positions
-    if isinstance(built.reference, _core.JointReference):
-        desired, _, _ = built.reference.sample(np.asarray(trace.time))
-    return joint_errors("tracking", desired - joints, built)
+        return joint_errors("tracking", trace.tracking["control"], built)
+    parts = []
+    for times, q in blocks(trace.time, trace.q):
+        desired = trace.q[0, JOINTS_Q]  # without a reference, the joints are held at their initial positions
+        if isinstance(built.reference, _core.JointReference):
+            desired, _, _ = built.reference.sample(times)
+        parts.append(np.abs(desired - q[:, JOINTS_Q]).max(axis=0))
+    return joint_errors("tracking", np.array(parts), built)
 
 
 def _are_prismatic(built: Built, wanted: list[str] | None) -> NDArray[np.bool_]:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from onorbit_rs.common.blocks import ROWS, blocks
 from onorbit_rs.common.coordinates import BASE_NV
 from onorbit_rs.common.printable import json_value
 
@@ -42,18 +43,22 @@ def latch_results(trace: WorldTrace, built: BuiltWorld) -> list[Summary]:
 
 def _nearest(trace: WorldTrace, built: BuiltWorld, frames: list[list[str]], end: float) -> dict[str, Any]:
     """Return the smallest distance of two frames before the time ``end``, s, with the angle at that time."""
-    rows = np.flatnonzero(np.asarray(trace.time) <= end)
-    poses = [
-        built.systems[system].model.frame_pose(np.asarray(trace[system].q)[rows], frame)
-        for system, frame in frames
-    ]
-    distances = np.linalg.norm(poses[1][:, :3, 3] - poses[0][:, :3, 3], axis=1)
-    row = int(np.argmin(distances))
-    turn = poses[0][row, :3, :3].T @ poses[1][row, :3, :3]
+    count = int(np.searchsorted(trace.time, end, side="right"))
+    configurations = [trace[system].q[:count] for system, _ in frames]
+    models = [built.systems[system].model for system, _ in frames]
+    found = []
+    for start, rows in enumerate(blocks(*configurations)):
+        poses = [model.frame_pose(q, frame)
+                 for model, q, (_, frame) in zip(models, rows, frames, strict=True)]  # fmt: skip
+        distances = np.linalg.norm(poses[1][:, :3, 3] - poses[0][:, :3, 3], axis=1)
+        row = int(np.argmin(distances))
+        turn = poses[0][row, :3, :3].T @ poses[1][row, :3, :3]
+        found.append((distances[row], ROWS * start + row, turn))
+    distance, row, turn = min(found, key=lambda nearest: nearest[:2])
     # 2 sin θ and 2 cos θ of the angle θ of the rotation
     sine = np.linalg.norm([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]])
     angle = np.arctan2(sine, np.trace(turn) - 1.0)
-    return {"nearest_m": distances[row], "nearest_rad": angle, "nearest_s": np.asarray(trace.time)[rows[row]]}
+    return {"nearest_m": distance, "nearest_rad": angle, "nearest_s": trace.time[row]}
 
 
 def _parting(trace: WorldTrace, built: BuiltWorld, names: list[str], end: float) -> dict[str, Any]:
@@ -72,8 +77,8 @@ def _parting(trace: WorldTrace, built: BuiltWorld, names: list[str], end: float)
     if parted is not None:
         row = min(int(np.searchsorted(trace.time, parted, side="right")), len(trace.time) - 1)
         first, second = (
-            np.asarray(trace[name].momentum)[row, :3] / built.systems[name].model.mass for name in names
+            np.asarray(trace[name].momentum[row])[:3] / built.systems[name].model.mass for name in names
         )
         speed = np.linalg.norm(second - first)
-        spin = np.linalg.norm(np.asarray(trace[names[1]].v)[row, 3:BASE_NV])
+        spin = np.linalg.norm(np.asarray(trace[names[1]].v[row])[3:BASE_NV])
     return {"parted_s": parted, "parted_speed_m_s": speed, "parted_spin_rad_s": spin}

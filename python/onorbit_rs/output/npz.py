@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+import struct
 import zipfile
 import zlib
 from collections.abc import Mapping
@@ -13,8 +14,12 @@ import numpy as np
 
 from onorbit_rs.common.blocks import ROWS, blocks
 
-_CHUNK = 1 << 24
+_CHUNK = _MAPPED = 1 << 24
 _MOST_COLUMNS = 10_000
+_LOCAL_HEADER, _ZIP64_FIELD = 30, 20
+"""Sizes of the header of a member without its name, and of its field with sizes of 64 bits, bytes."""
+_PADDING, _PADDING_ID = struct.Struct("<HH"), 0xD935
+"""Header of a field of zeros between the header and the content of a member."""
 _MAGIC = b"\x93NUMPY\x01\x00"
 _HEADER = re.compile(
     rb"\{'descr': '(?P<kind>[<>|][biuf][1248]|<U[0-9]{1,4})', 'fortran_order': (?P<is_fortran>True|False), "
@@ -27,10 +32,11 @@ def write_arrays(stream: BinaryIO, arrays: Mapping[str, Any]) -> None:
     """Write arrays of numbers and texts as an uncompressed ``.npz`` file, as :func:`numpy.savez` does.
 
     Long arrays are written in blocks of rows, so that arrays that are mapped from files need little memory.
+    The numbers of each array begin at a multiple of 8 bytes, so that they can be mapped into memory.
     """
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_STORED, allowZip64=True) as archive:
         for name, array in arrays.items():
-            with archive.open(f"{name}.npy", "w", force_zip64=True) as member:
+            with archive.open(_aligned(f"{name}.npy", stream.tell()), "w", force_zip64=True) as member:
                 if np.ndim(array) == 0 or len(array) <= ROWS:
                     np.lib.format.write_array(member, np.asarray(array), allow_pickle=False)
                     continue
@@ -40,10 +46,22 @@ def write_arrays(stream: BinaryIO, arrays: Mapping[str, Any]) -> None:
                     member.write(np.ascontiguousarray(rows).tobytes())
 
 
-def read_arrays(stream: BinaryIO) -> dict[str, Any]:
+def _aligned(name: str, offset: int) -> zipfile.ZipInfo:
+    """Return a member whose header begins at ``offset`` and whose content begins at a multiple of 8 bytes."""
+    member = zipfile.ZipInfo(name)
+    member.external_attr = 0o600 << 16
+    before = offset + _LOCAL_HEADER + len(name.encode()) + _ZIP64_FIELD + len(_PADDING.pack(0, 0))
+    padding = -before % 8
+    member.extra = _PADDING.pack(_PADDING_ID, padding) + bytes(padding)
+    return member
+
+
+def read_arrays(stream: BinaryIO, *, trusted: bool = False) -> dict[str, Any]:
     """Return every array of a ``.npz`` file of numbers and texts, as :func:`write_arrays` writes.
 
-    The memory used is bounded by the size of the file even if its headers are wrong; nothing is unpickled.
+    Arrays of more than 16 MB are mapped from the file, and read-only. The memory used is bounded by the size
+    of the file even if its headers are wrong; nothing is unpickled. The checksums of mapped arrays are not
+    computed for a ``trusted`` file, which this process has written.
 
     Raises
     ------
@@ -56,7 +74,10 @@ def read_arrays(stream: BinaryIO) -> dict[str, Any]:
         with zipfile.ZipFile(stream) as archive:
             members = archive.infolist()
             _check_directory(members, size)
-            return {member.filename.removesuffix(".npy"): _array(archive, member) for member in members}
+            return {
+                member.filename.removesuffix(".npy"): _array(archive, member, stream, trusted)
+                for member in members
+            }
     except (zipfile.BadZipFile, zlib.error, NotImplementedError, EOFError, RuntimeError) as error:
         raise ValueError(str(error) or type(error).__name__) from error
 
@@ -79,7 +100,7 @@ def _check_directory(members: list[zipfile.ZipInfo], size: int) -> None:
         raise ValueError(f"its columns have {total} bytes in total, but the file has {size}")
 
 
-def _array(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> Any:
+def _array(archive: zipfile.ZipFile, member: zipfile.ZipInfo, file: BinaryIO, trusted: bool) -> Any:
     with archive.open(member) as stream:
         magic, length = stream.read(8), int.from_bytes(stream.read(2), "little")
         header = _HEADER.fullmatch(stream.read(length))
@@ -94,10 +115,25 @@ def _array(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> Any:
             raise ValueError(
                 f"{member.filename} contains {left} bytes, but its shape {shape} requires {needed}"
             )
-        content = bytearray()
-        while chunk := stream.read(_CHUNK):  # zipfile verifies the checksum at the end of the member
-            content += chunk
-    if len(content) != left:
-        raise ValueError(f"{member.filename} ends after {len(content)} of {left} bytes")
-    order: Literal["F", "C"] = "F" if header["is_fortran"] == b"True" else "C"
+        order: Literal["F", "C"] = "F" if header["is_fortran"] == b"True" else "C"
+        start = _content_start(file, member) + 10 + length
+        is_mapped = left > _MAPPED and start % 8 == 0 and hasattr(file, "name")
+        content, found = bytearray(), 0
+        while not (is_mapped and trusted) and (chunk := stream.read(_CHUNK)):
+            found += len(chunk)  # zipfile verifies the checksum at the end of the member
+            if not is_mapped:
+                content += chunk
+    if is_mapped and (trusted or found == left):
+        return np.memmap(file, dtype, "r", start, shape, order)
+    if found != left:
+        raise ValueError(f"{member.filename} ends after {found} of {left} bytes")
     return np.frombuffer(content, dtype=dtype).reshape(shape, order=order)
+
+
+def _content_start(file: BinaryIO, member: zipfile.ZipInfo) -> int:
+    """Return the offset of the content of a member in the file."""
+    position = file.tell()
+    file.seek(member.header_offset + _LOCAL_HEADER - 4)
+    name, extra = _PADDING.unpack(file.read(4))
+    file.seek(position)
+    return int(member.header_offset + _LOCAL_HEADER + name + extra)

@@ -52,7 +52,7 @@ def arrays_of(trace: Trace) -> dict[str, Any]:
 
     They include the columns of every control, effect, contact and loop.
     """
-    arrays = {name: np.asarray(getattr(trace, name)) for name in trace.columns()}
+    arrays = {name: np.asanyarray(getattr(trace, name)) for name in trace.columns()}
     contacts = {name: contact.values for name, contact in trace.contacts.items()}
     loops = {name: loop.values for name, loop in trace.loops.items()}
     for name, by_owner in (
@@ -61,7 +61,7 @@ def arrays_of(trace: Trace) -> dict[str, Any]:
         ("contacts", contacts),
         ("loops", loops),
     ):
-        arrays |= {path_of(name, owner): np.asarray(rows) for owner, rows in by_owner.items()}
+        arrays |= {path_of(name, owner): np.asanyarray(rows) for owner, rows in by_owner.items()}
     return arrays
 
 

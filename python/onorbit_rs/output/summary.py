@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs import _core
+from onorbit_rs.common.blocks import largest
 from onorbit_rs.common.coordinates import BASE_NQ, POSITION, QUATERNION
 from onorbit_rs.common.printable import json_value
 from onorbit_rs.common.rotations import angle_between
@@ -24,9 +25,13 @@ from onorbit_rs.robots.fingerprint import fingerprint
 from onorbit_rs.scenario.control import GripForceController, JointLaw
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from onorbit_rs._core import Orbit, Trace, WorldTrace
     from onorbit_rs.scenario import Scenario, WorldScenario
     from onorbit_rs.scenario.build import Built
+
+    Floats = NDArray[np.float64]
 
 Summary = dict[str, Any]
 
@@ -100,14 +105,19 @@ def _certificate(trace: Trace) -> Summary:
 def _tracking(trace: Trace) -> Summary:
     if "position_error" not in trace.columns():
         return {}
-    position = np.linalg.norm(np.asarray(trace.position_error), axis=1)
-    attitude = np.linalg.norm(np.asarray(trace.attitude_error), axis=1)
+    position, attitude = trace.position_error, trace.attitude_error
     return {
-        "tracking_position_error_max_m": position.max(),
-        "tracking_position_error_final_m": position[-1],
-        "tracking_attitude_error_max_rad": attitude.max(),
-        "tracking_attitude_error_final_rad": attitude[-1],
+        "tracking_position_error_max_m": largest(_norms, position),
+        "tracking_position_error_final_m": _norms(position[-1:])[0],
+        "tracking_attitude_error_max_rad": largest(_norms, attitude),
+        "tracking_attitude_error_final_rad": _norms(attitude[-1:])[0],
     }
+
+
+def _norms(rows: Floats) -> Floats:
+    """Return the magnitude of each row."""
+    magnitudes: Floats = np.linalg.norm(rows, axis=1)
+    return magnitudes
 
 
 def _controls(trace: Trace, built: Built) -> Summary:
@@ -117,8 +127,8 @@ def _controls(trace: Trace, built: Built) -> Summary:
         return {}
     summary: Summary = {}
     for control in scenario.controllers:
-        errors = np.asarray(trace.tracking.get(control.name, np.empty((0, 0))))
-        if not errors.size:
+        errors = trace.tracking.get(control.name, np.empty((0, 0)))
+        if not np.size(errors):
             continue
         key = f"tracking_{control.name}"
         if isinstance(control, JointLaw):
@@ -126,9 +136,8 @@ def _controls(trace: Trace, built: Built) -> Summary:
         elif isinstance(control, GripForceController):
             summary[f"{key}_force_error_final_n"] = errors[-1, 0]
         else:
-            position, attitude = (np.linalg.norm(part, axis=1) for part in np.split(errors, 2, axis=1))
-            summary[f"{key}_position_error_max_m"] = position.max()
-            summary[f"{key}_attitude_error_max_rad"] = attitude.max()
+            summary[f"{key}_position_error_max_m"] = largest(lambda rows: _norms(rows[:, :3]), errors)
+            summary[f"{key}_attitude_error_max_rad"] = largest(lambda rows: _norms(rows[:, 3:]), errors)
     with_goals = {control.name for control in scenario.controllers if control.goal is not None}
     results = {f"control_{result['name']}_result": result["outcome"] for result in trace.results
                if result["name"] in with_goals}  # fmt: skip
@@ -136,20 +145,22 @@ def _controls(trace: Trace, built: Built) -> Summary:
 
 
 def _motion(trace: Trace, built: Built) -> Summary:
-    q = np.asarray(trace.q)
+    start = np.array(trace.q[0])
     motion = joint_loads(trace, built) | efforts_at_limit(trace, built)
-    motion["base_rotation_max_rad"] = angle_between(q[:, QUATERNION], q[0, QUATERNION]).max()
-    motion["base_displacement_max_m"] = np.linalg.norm(q[:, POSITION] - q[0, POSITION], axis=1).max()
+    motion["base_rotation_max_rad"] = largest(
+        lambda q: angle_between(q[:, QUATERNION], start[QUATERNION]), trace.q
+    )
+    motion["base_displacement_max_m"] = largest(lambda q: _norms(q[:, POSITION] - start[POSITION]), trace.q)
     return motion
 
 
 def _losses(trace: Trace, built: Built) -> Summary:
     """Return the energy lost in the joints, and the joints beyond their limits; empty without joints."""
-    if np.asarray(trace.q).shape[1] == BASE_NQ:
+    if np.shape(trace.q)[1] == BASE_NQ:
         return {}
     losses: Summary = {}
     if "dissipated" in trace.columns():
-        losses["joint_dissipation_j"] = np.asarray(trace.dissipated)[-1]
+        losses["joint_dissipation_j"] = float(trace.dissipated[-1])
         losses["joint_limits_exceeded"] = ", ".join(trace.joint_limits_exceeded())
     return losses | loads_exceeded(trace, built.model)
 
@@ -158,10 +169,10 @@ def _loops(trace: Trace) -> Summary:
     """Return the largest force, moment and opening of every closed loop."""
     loops: Summary = {}
     for name, loop in trace.loops.items():
-        distance, angle = np.asarray(loop.opening).max(axis=0)
+        distance, angle = largest(lambda rows: rows, loop.opening)
         for what, value in (
-            ("force_max_n", np.linalg.norm(loop.force, axis=1).max()),
-            ("moment_max_nm", np.linalg.norm(loop.moment, axis=1).max()),
+            ("force_max_n", largest(_norms, loop.force)),
+            ("moment_max_nm", largest(_norms, loop.moment)),
             ("opening_max_m", distance),
             ("opening_angle_max_rad", angle),
         ):
@@ -193,8 +204,7 @@ def _orbit(trace: Trace, scenario: Scenario, orbit: Orbit | None) -> Summary:
     if orbit.mu is not None:
         summary["gravity_mode"] = scenario.gravity_mode
     if "reference_residual" in trace.columns():
-        residual = np.linalg.norm(np.asarray(trace.reference_residual), axis=1)
-        summary["reference_residual_max_m_s2"] = residual.max()
+        summary["reference_residual_max_m_s2"] = largest(_norms, trace.reference_residual)
     return summary
 
 

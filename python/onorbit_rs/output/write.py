@@ -6,12 +6,11 @@ import json
 from functools import partial
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 import yaml
 
-from onorbit_rs import _core
 from onorbit_rs.output.folder import OutputFolder
 from onorbit_rs.output.manifest import FIGURES, RECORDING, SCENARIO, SUMMARY, TRACE
 from onorbit_rs.output.names import names_of
@@ -19,6 +18,7 @@ from onorbit_rs.output.npz import write_arrays
 from onorbit_rs.output.painters import Album, painters
 from onorbit_rs.output.pickling import arrays_of
 from onorbit_rs.output.replacement import Replacement
+from onorbit_rs.output.streamed_trace import StreamedTrace, StreamedWorldTrace
 from onorbit_rs.output.world import world_arrays
 from onorbit_rs.scenario.build import Built
 from onorbit_rs.scenario.build_world import BuiltWorld
@@ -72,12 +72,13 @@ def write_trace(
     names = {path: values for system, one in alone.items()
              for path, values in names_of(one.model, f"{system}/" if system else "").items()}  # fmt: skip
     with files.writing(TRACE) as path, path.open("wb") as stream:
-        if isinstance(trace, _core.WorldTrace):
-            columns = world_arrays(trace)
+        if isinstance(built, BuiltWorld):
+            columns = world_arrays(cast("WorldTrace", trace))
         else:
-            columns = arrays_of(trace)
-            if len(trace.rereferenced):
-                columns["rereferenced"] = np.asarray(trace.rereferenced)
+            single = cast("Trace", trace)
+            columns = arrays_of(single)
+            if len(single.rereferenced):
+                columns["rereferenced"] = np.asarray(single.rereferenced)
         write_arrays(stream, {**columns, **more, **names})
 
 
@@ -102,6 +103,8 @@ def write_pictures(
 
     For a world, the file names of a system's figures begin with the name of the system.
     """
+    if isinstance(trace, StreamedTrace | StreamedWorldTrace) and (wanted.figures or wanted.recording):
+        trace = cast("Trace | WorldTrace", trace.decimated())
     albums = _albums(trace, summary, built) if wanted.figures else []
     if not albums:
         if wanted.recording:
@@ -137,11 +140,10 @@ def _albums(trace: Trace | WorldTrace, summary: dict[str, Any], built: Built | B
             return []
         return [Album(prefix, figures.subject_of(own, one.scenario, one.model, one.orbit, one.earth))]
 
-    if not isinstance(trace, _core.WorldTrace):
-        assert isinstance(built, Built)
-        return alone("", trace, built)
-    assert isinstance(built, BuiltWorld)
+    if isinstance(built, Built):
+        return alone("", cast("Trace", trace), built)
     albums = []
+    trace = cast("WorldTrace", trace)
     if len(trace.time) > 1:
         models = {name: one.model for name, one in built.systems.items()}
         events, found = figures.marks_of(summary), connections(built.scenario)
@@ -170,14 +172,14 @@ def write_recording(
     """Write the recording of a run for the viewer, with notes from its summary."""
     from onorbit_rs import viewer  # imported here because rerun takes a second to import
 
-    if isinstance(trace, _core.WorldTrace):
-        assert isinstance(built, BuiltWorld)
+    if isinstance(built, BuiltWorld):
         text = viewer.world_notes(summary, built.scenario)
-        viewer.write_world_recording(path, trace, viewer.WorldSetting.of(built), notes=text)
+        viewer.write_world_recording(
+            path, cast("WorldTrace", trace), viewer.WorldSetting.of(built), notes=text
+        )
     else:
-        assert isinstance(built, Built)
         text = viewer.notes(summary, built.scenario)
-        viewer.write_recording(path, trace, viewer.Setting.of(built), notes=text)
+        viewer.write_recording(path, cast("Trace", trace), viewer.Setting.of(built), notes=text)
 
 
 def with_absolute_paths(scenario: Scenario | WorldScenario) -> dict[str, Any]:

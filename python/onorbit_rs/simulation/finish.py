@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from onorbit_rs._core import WorldTrace
 from onorbit_rs.common.printable import shell_word
 from onorbit_rs.exceptions import RunInterrupted, SimulationError
 from onorbit_rs.output import (
@@ -20,6 +19,9 @@ from onorbit_rs.output import (
     write_trace,
 )
 from onorbit_rs.output.clearance import add_clearances, clearance_arrays, found_clearances
+from onorbit_rs.output.manifest import TRACE
+from onorbit_rs.output.npz import read_arrays
+from onorbit_rs.output.streamed_trace import StreamedTrace, StreamedWorldTrace
 from onorbit_rs.output.write import ALL, Pictures
 from onorbit_rs.scenario.build import Built
 from onorbit_rs.scenario.build_world import BuiltWorld
@@ -29,7 +31,7 @@ from onorbit_rs.simulation.stop_signals import stopped_by
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from onorbit_rs._core import Trace
+    from onorbit_rs._core import Trace, WorldTrace
 
 
 def finished(
@@ -56,6 +58,9 @@ def finished(
         with folder.replacing() as files:
             write_trace(files, trace, built, clearance_arrays(found))
             write_summary(files, summary)
+        if isinstance(trace, StreamedTrace | StreamedWorldTrace):
+            with (folder.path / TRACE).open("rb") as stream:
+                trace.read_from(read_arrays(stream, trusted=True))
     with _noting(lambda: f"trace and summary in {folder.path} are complete; {_not_drawn(folder)}"):
         write_pictures(folder, trace, summary, built, pictures, tell=tell)
     folder.discard_checkpoint()
@@ -65,11 +70,9 @@ def finished(
 def _summary(
     trace: Trace | WorldTrace, built: Built | BuiltWorld, *, status: str = "complete"
 ) -> dict[str, Any]:
-    if isinstance(trace, WorldTrace):
-        assert isinstance(built, BuiltWorld)
-        return summarize_world(trace, built, status=status)
-    assert isinstance(built, Built)
-    return summarize(trace, built, status=status)
+    if isinstance(built, BuiltWorld):
+        return summarize_world(cast("WorldTrace", trace), built, status=status)
+    return summarize(cast("Trace", trace), built, status=status)
 
 
 @contextmanager

@@ -25,10 +25,11 @@ BASE_ALONE, PER_ROWS_ALONE = 0.12e9, 1.1
 """The same values for a run that writes no folder, which has no recording."""
 
 LARGE = 1e9
-"""Size of the rows of a run, bytes, above which a warning states the size."""
+"""Size of the rows in memory, bytes, above which a warning states the size."""
 
 FITTING = 60e6
-"""Size of the rows, bytes, with which a run needs less than 500 MB; messages suggest it."""
+"""Size of the rows, bytes, above which a run with a folder writes them while it is computed, and for which a
+message suggests ``record_every``: a run with these rows in memory needs less than 500 MB."""
 
 _ALWAYS = (
     "time", "q", "v", "tau", "acceleration", "momentum", "impulse", "kinetic_energy", "work", "dissipated",
@@ -63,8 +64,14 @@ def estimated_memory(built: Built | BuiltWorld, *, has_folder: bool) -> float:
     return BASE + size * (PER_ROWS + PER_RECORDED * min(1.0, MOST_STEPS / rows))
 
 
-def check_size(built: Built | BuiltWorld, folder: Path | None) -> None:
-    """Check that the rows of a run fit into the memory and on the disk of ``folder``; warn if they are large.
+def is_streamed(built: Built | BuiltWorld, *, has_folder: bool, is_viewed: bool) -> bool:
+    """Return True if the rows of a run are written to its folder while the run is computed."""
+    return has_folder and not is_viewed and estimated_bytes(built) > FITTING
+
+
+def check_size(built: Built | BuiltWorld, folder: Path | None, *, is_viewed: bool = False) -> None:
+    """Check that the rows of a run fit on the disk of ``folder`` and, if the run keeps them in memory, into
+    the memory; warn if many rows are kept in memory.
 
     Raises
     ------
@@ -74,19 +81,37 @@ def check_size(built: Built | BuiltWorld, folder: Path | None) -> None:
     size = estimated_bytes(built)
     if size <= FITTING:
         return
+    if folder is not None:
+        _check_disk(built, folder, size)
+    if is_streamed(built, has_folder=folder is not None, is_viewed=is_viewed):
+        return
     needed = estimated_memory(built, has_folder=folder is not None)
     every = _rounded_up(built.scenario.simulation.record_every * size / FITTING)
     what = f"the run records {rows_of(built)} rows, about {_text(size)}"
-    fix = f"set simulation.record_every to {every}, which needs less than 500 MB of memory"
+    other = (
+        "do not view the run"
+        if is_viewed
+        else "give the run a folder (--out DIR, or out=), to which it writes its rows"
+    )
+    fix = f"{other}, or set simulation.record_every to {every}, which needs less than 500 MB of memory"
     free = _available_memory()
     if free is not None and needed > free:
         raise _too_large(f"{what}, and needs about {_text(needed)} of memory, but {_text(free)} are "
                          f"available; {fix}", built, every)  # fmt: skip
-    if folder is not None and 2.0 * size > (space := float(shutil.disk_usage(folder).free)):
-        raise _too_large(f"{what}, and needs twice as much space on the disk of {folder}, which has "
-                         f"{_text(space)}; {fix}", built, every)  # fmt: skip
     if size > LARGE:
         warnings.warn(f"{what}, and needs about {_text(needed)} of memory; {fix}", stacklevel=4)
+
+
+def _check_disk(built: Built | BuiltWorld, folder: Path, size: float) -> None:
+    """Raise an error if twice the size of the rows, bytes, exceeds the free space."""
+    space = float(shutil.disk_usage(folder).free)
+    if 2.0 * size > space:
+        every = _rounded_up(built.scenario.simulation.record_every * max(size / FITTING, 4.0 * size / space))
+        raise _too_large(
+            f"the run records {rows_of(built)} rows, about {_text(size)}, and needs twice as much space on "
+            f"the disk of {folder}, which has {_text(space)}; free space, or set simulation.record_every to "
+            f"{every}", built, every,
+        )  # fmt: skip
 
 
 def _numbers_per_row(built: Built) -> int:

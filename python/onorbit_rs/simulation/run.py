@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from onorbit_rs.common.files import exists
 from onorbit_rs.common.numbers import finite_float
@@ -40,8 +40,9 @@ from onorbit_rs.simulation.command_format import Command, in_order, read_command
 from onorbit_rs.simulation.command_format import checked as checked_command
 from onorbit_rs.simulation.finish import finished, keep_failed, keep_stopped
 from onorbit_rs.simulation.live import CHECKPOINT_EVERY, watched
-from onorbit_rs.simulation.memory import check_size
+from onorbit_rs.simulation.memory import check_size, is_streamed
 from onorbit_rs.simulation.replay import check_commands
+from onorbit_rs.simulation.streaming import streamed
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Model, Trace, WorldTrace
@@ -266,10 +267,12 @@ def resume(
         digest = _digest(scenario)
         saved = read_checkpoint(path, digest)
         writer = CheckpointWriter(folder, digest, after=saved)
-        given = saved_commands(folder)
+        given, built = saved_commands(folder), _built(scenario)
+        is_lazy = isinstance(built, Built) and is_streamed(built, has_folder=True, is_viewed=view)
+        checkpoint = saved.checkpoint if is_lazy else saved.in_memory()
         return _simulate(
-            _with_warnings(_built(scenario), given), folder, Pictures(figures, recording), quiet=quiet,
-            view=view, commands=given, checkpoint=writer, checkpoint_every=every, resume=saved.checkpoint,
+            _with_warnings(built, given), folder, Pictures(figures, recording), quiet=quiet,
+            view=view, commands=given, checkpoint=writer, checkpoint_every=every, resume=checkpoint,
         )  # fmt: skip
 
 
@@ -328,11 +331,14 @@ def _simulate(
 ) -> Run:
     """Simulate and write the results, including those of a run that was stopped or failed."""
     scenario, duration = built.scenario, built.scenario.simulation.duration
-    check_size(built, folder.path if folder else None)
+    check_size(built, folder.path if folder else None, is_viewed=view)
     try:
         with progress_bar(scenario.name, duration, quiet=quiet) as progress:
             trace: Trace | WorldTrace
-            if view or commands:
+            if is_streamed(built, has_folder=folder is not None, is_viewed=view):
+                found = streamed(built, progress.move, **checkpoints, commands=commands)
+                trace = cast("Trace | WorldTrace", found)
+            elif view or commands:
                 trace = watched(built, progress.move, **checkpoints, view=view, commands=commands)
             else:
                 trace = built.simulation.run(duration, progress=progress.move, **checkpoints)

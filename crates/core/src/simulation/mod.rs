@@ -14,6 +14,7 @@ mod checkpoint_world;
 mod closed_start;
 mod columns;
 mod common_center;
+mod common_rows;
 mod connections;
 mod contact_state;
 mod contacts;
@@ -73,18 +74,19 @@ mod steps;
 mod trace;
 mod tree;
 mod tree_state;
-mod world_rows;
+
 mod wrench_commands;
 
 pub use crate::world::{Layout, SystemPlace};
 pub use attached::AttachedControl;
-pub use certificate::{Certificate, Check, PairChecks, certify};
+pub use certificate::{Certificate, Check, PairChecks, RowChecks, certify, drop_checked_rows};
 pub use checkpoint::Checkpoint;
 pub use checkpoint_error::CheckpointError;
 pub(crate) use closed_start::closed_start;
 pub use columns::{
     COLUMNS, CONTACTS, Column, Condition, LOOPS, Length, Part, REREFERENCED, TRACKING, WRENCHES, columns,
 };
+pub use common_rows::{WorldRows, world_rows, world_rows_between};
 pub use distance::FarSystem;
 pub use engine::{BodyWeld, ContactOutput, EngagedBrake, Engine, Exchange, StepInput, StepOutput};
 pub use environment_query::EnvironmentQuery;
@@ -106,5 +108,4 @@ pub use steps::Monitor;
 pub use trace::{CoordinateDrift, GoalResult, NamedColumn, Trace};
 pub(crate) use tree::Tree;
 pub(crate) use tree_state::TreeState;
-pub use world_rows::{WorldRows, world_rows};
 pub use wrench_commands::{WrenchAxes, WrenchCommand};

@@ -1,5 +1,6 @@
 //! Recorder, which adds rows to the trace of one system.
 
+use super::certificate::remove_checked;
 use super::checkpoint_error::CheckpointError;
 use super::columns::{COLUMNS, CONTACTS, Column, Condition, LOOPS, WRENCHES};
 use super::engine::ContactOutput;
@@ -113,6 +114,8 @@ impl Recorder {
     /// Adds the rows recorded before a checkpoint to the trace, which must be empty.
     pub(super) fn resume(&mut self, mut rows: Trace) -> Result<(), CheckpointError> {
         let count = rows.rows();
+        self.dropped = rows.rows_recorded() - count;
+        self.trace.removed = rows.removed.take();
         if count == 0 && rows.columns().all(|(_, column)| column.is_empty()) {
             return Ok(());
         }
@@ -289,6 +292,12 @@ impl Recorder {
         self.truncate(self.trace.rows().saturating_sub(1));
     }
 
+    /// Removes all rows except the first one and the last `keep`, after adding them to the checks of the
+    /// certificate; see [`drop_checked_rows`](super::drop_checked_rows).
+    pub(super) fn drop_checked_rows(&mut self, keep: usize, model: &Model) {
+        self.dropped += remove_checked(&mut self.trace, keep, model, &self.widths);
+    }
+
     /// Removes all rows except the first one and the last `keep`. The remaining rows are then not sufficient
     /// for the checks that compare successive steps.
     pub(super) fn drop_rows(&mut self, keep: usize) {
@@ -296,10 +305,9 @@ impl Recorder {
         if excess == 0 {
             return;
         }
-        for ((_, column), width) in self.trace.columns_mut().zip(&self.widths) {
-            column.drain(*width..(1 + excess) * width);
-        }
+        self.trace.remove(excess, &self.widths);
         self.trace.rows_suffice = false;
+        self.trace.removed = None;
         self.dropped += excess;
     }
 

@@ -199,7 +199,7 @@ impl<S: Scalar> RunState<'_, S> {
     /// Restores the state of a checkpoint; `rows` contains the rows of each system recorded before the
     /// checkpoint.
     pub(super) fn resume(&mut self, from: GroupCheckpoint, rows: Vec<Trace>) -> Result<(), SimulationError> {
-        let counts: Vec<usize> = rows.iter().map(Trace::rows).collect();
+        let counts: Vec<usize> = rows.iter().map(Trace::rows_recorded).collect();
         from.check(&self.layout, &self.schedule, &counts, self.events.list.len())?;
         self.check_connections(&from.progress.world)?;
         self.check_contacts(&from.progress)?;

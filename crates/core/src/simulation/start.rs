@@ -5,7 +5,7 @@ use super::environment_loads::EnvironmentLoads;
 use super::error::{RunFailure, SimulationError};
 use super::recording::Recording;
 use super::settings::Simulation;
-use super::start_group::{Shared, column_names};
+use super::start_group::{ROWS_OF_OPEN_RUN, Shared, column_names};
 use super::stepper::{Group, Stepper};
 use super::trace::Trace;
 use crate::control::Begin;
@@ -42,7 +42,21 @@ impl Simulation {
     /// positive and finite, and [`SimulationError::Earth`] if the orientation data of the Earth do not cover
     /// the run.
     pub fn start(&mut self, duration: Option<f64>) -> Result<Stepper<'_>, SimulationError> {
-        self.start_from(duration, None)
+        self.start_from(duration, None, usize::MAX)
+    }
+
+    /// Starts or resumes a run whose caller removes rows with [`Stepper::drop_checked_rows`]: memory is
+    /// reserved for few rows only. The rows of `from` may be shortened by [`drop_checked_rows`](super::drop_checked_rows).
+    ///
+    /// # Errors
+    /// The errors of [`Simulation::start`] and [`Simulation::resume`].
+    pub fn start_streaming(
+        &mut self,
+        duration: Option<f64>,
+        from: Option<(Checkpoint, Vec<Trace>)>,
+    ) -> Result<Stepper<'_>, SimulationError> {
+        let duration = duration.or(from.as_ref().and_then(|(checkpoint, _)| checkpoint.duration()));
+        self.start_from(duration, from, ROWS_OF_OPEN_RUN)
     }
 
     /// Resumes a run of the same simulation from a checkpoint and the rows of each system recorded before it.
@@ -59,13 +73,14 @@ impl Simulation {
         from: Checkpoint,
         rows: Vec<Trace>,
     ) -> Result<Stepper<'_>, SimulationError> {
-        self.start_from(duration.or(from.duration()), Some((from, rows)))
+        self.start_from(duration.or(from.duration()), Some((from, rows)), usize::MAX)
     }
 
     fn start_from(
         &mut self,
         duration: Option<f64>,
         from: Option<(Checkpoint, Vec<Trace>)>,
+        most_rows: usize,
     ) -> Result<Stepper<'_>, SimulationError> {
         self.check()?;
         duration.map_or(Ok(()), |duration| SimulationError::check_positive("duration", duration))?;
@@ -73,8 +88,10 @@ impl Simulation {
             earth.covers(0.0).and_then(|()| earth.covers(duration.unwrap_or(0.0)))?;
         }
         match InstructionSet::current() {
-            InstructionSet::Baseline => self.start_with::<f64>(duration, from),
-            InstructionSet::Fused | InstructionSet::Wide => self.start_with::<Fused>(duration, from),
+            InstructionSet::Baseline => self.start_with::<f64>(duration, from, most_rows),
+            InstructionSet::Fused | InstructionSet::Wide => {
+                self.start_with::<Fused>(duration, from, most_rows)
+            }
         }
     }
 
@@ -82,6 +99,7 @@ impl Simulation {
         &mut self,
         duration: Option<f64>,
         from: Option<(Checkpoint, Vec<Trace>)>,
+        most_rows: usize,
     ) -> Result<Stepper<'_>, SimulationError> {
         let groups = match self.engine {
             None => groups(self.systems.len(), &self.events, &self.links()),
@@ -100,7 +118,7 @@ impl Simulation {
             Some((checkpoints, rows)) => (checkpoints.into_iter().map(Some).collect(), rows),
             None => (vec![], vec![]),
         };
-        let (time_step, settings) = (self.time_step, self.settings());
+        let (time_step, settings) = (self.time_step, Shared { most_rows, ..self.settings() });
         let Self { systems, events, engine, .. } = self;
         let mut systems: Vec<_> = systems.iter_mut().map(Some).collect();
         let mut engine = engine.as_deref_mut();
@@ -145,6 +163,7 @@ impl Simulation {
             record_every: self.record_every,
             contacts: self.contacts.clone(),
             contact_steps: self.contact_steps,
+            most_rows: usize::MAX,
         }
     }
 

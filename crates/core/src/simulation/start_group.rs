@@ -38,7 +38,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 /// Number of rows for which a run without a planned end reserves memory.
-const ROWS_OF_OPEN_RUN: usize = 1024;
+pub(super) const ROWS_OF_OPEN_RUN: usize = 1024;
 
 /// Settings that all systems of a simulation have in common.
 #[derive(Clone)]
@@ -64,6 +64,8 @@ pub(super) struct Shared {
     /// Contacts. In the settings of a group, they specify systems by their index in the group.
     pub(super) contacts: Vec<Contact>,
     pub(super) contact_steps: ContactSteps,
+    /// Largest number of rows for which memory is reserved.
+    pub(super) most_rows: usize,
 }
 
 impl Shared {
@@ -89,7 +91,7 @@ impl Shared {
     ) -> Result<RunState<'a, S>, SimulationError> {
         let events = events_of(numbers, events);
         let schedule = self.schedule(duration, &systems, &events.list);
-        let rows = self.row_count(&schedule);
+        let rows = self.row_count(&schedule).min(self.most_rows);
         let (is_native, is_adaptive) = (engine.is_none(), self.is_adaptive());
         let has_every_step = self.record_every == 1 && !is_adaptive;
         // the rows of a system contain neither the accelerations that torques on the rest of its tree cause,

@@ -183,7 +183,14 @@ impl<'a> Stepper<'a> {
     /// The run cannot be resumed from a later checkpoint, since rows are missing. If every step is recorded,
     /// the checks of the certificate that compare successive steps are then omitted.
     pub fn drop_rows(&mut self, keep: usize) {
-        self.groups.iter_mut().for_each(|group| group.run.drop_rows(keep));
+        self.groups.iter_mut().for_each(|group| group.run.drop_rows(keep, false));
+    }
+
+    /// Removes the recorded rows of each system except the first one and the last `keep` (at least 16), like
+    /// [`Stepper::drop_rows`], after adding them to the checks of the certificate. The certificate is that of
+    /// a run that keeps all rows, to the last bit.
+    pub fn drop_checked_rows(&mut self, keep: usize) {
+        self.groups.iter_mut().for_each(|group| group.run.drop_rows(keep, true));
     }
 
     /// Returns the recording of the run as if it ended now, with a last row at the current time.

@@ -2,6 +2,7 @@
 
 use super::attached::AttachedControl;
 use super::checkpoint::GroupCheckpoint;
+use super::equations::EquationsOfMotion;
 use super::error::SimulationError;
 use super::external_control::ExternalControl;
 use super::recording::{EventRecord, GroupRecording};
@@ -58,8 +59,9 @@ pub(super) trait Steps: Send {
     fn trigger(&mut self, event: usize) -> Result<(), SimulationError>;
     fn checkpoint(&self) -> Result<GroupCheckpoint, SimulationError>;
     fn rows(&self, system: usize) -> &Trace;
-    /// Removes all rows of each system except the first one and the last `keep`.
-    fn drop_rows(&mut self, keep: usize);
+    /// Removes all rows of each system except the first one and the last `keep`; if `is_checked`, the
+    /// certificate still includes them.
+    fn drop_rows(&mut self, keep: usize, is_checked: bool);
     fn recording(&mut self) -> Result<GroupRecording, SimulationError>;
     /// Returns the row of each system at the current time.
     fn present_rows(&mut self) -> Result<Vec<Trace>, SimulationError>;
@@ -181,8 +183,17 @@ impl<S: Scalar> Steps for RunState<'_, S> {
         &self.systems[system].recorder.trace
     }
 
-    fn drop_rows(&mut self, keep: usize) {
-        self.systems.iter_mut().for_each(|run| run.recorder.drop_rows(keep));
+    fn drop_rows(&mut self, keep: usize, is_checked: bool) {
+        let Self { systems, equations, state, .. } = self;
+        let EquationsOfMotion { trees, members, .. } = &*equations;
+        for (number, run) in systems.iter_mut().enumerate() {
+            if is_checked {
+                let (_, own) = members.system(number, trees, &state.trees);
+                run.recorder.drop_checked_rows(keep, &own.model);
+            } else {
+                run.recorder.drop_rows(keep);
+            }
+        }
     }
 
     fn recording(&mut self) -> Result<GroupRecording, SimulationError> {

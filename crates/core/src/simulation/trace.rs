@@ -1,6 +1,6 @@
 //! Trace of a run.
 
-use super::certificate::PairChecks;
+use super::certificate::{PairChecks, RowChecks};
 use super::columns::{CONTACTS, Column, LOOPS, TRACKING, WRENCHES};
 use crate::control::Outcome;
 use crate::model::{BASE_NQ, Model};
@@ -51,6 +51,9 @@ macro_rules! define_trace {
             /// True if the rows are sufficient for the checks that compare successive steps: every step is
             /// recorded, and no capture can make the system a part of a larger tree.
             pub rows_suffice: bool,
+            /// Checks of the rows that were removed during the run; `None` if no rows were removed, or if
+            /// they were not checked.
+            pub removed: Option<Box<RowChecks>>,
         }
 
         impl Trace {
@@ -155,13 +158,33 @@ impl Trace {
         self.time.len()
     }
 
+    /// Returns the number of rows, including those that were removed after they were checked.
+    pub fn rows_recorded(&self) -> usize {
+        self.rows() + self.removed.as_ref().map_or(0, |removed| removed.rows())
+    }
+
+    /// Returns true if every column has the same number of values in each row.
+    pub fn has_all_values(&self) -> bool {
+        let rows = self.rows();
+        rows > 0 && self.columns().all(|(_, column)| column.len() % rows == 0)
+    }
+
+    /// Removes `excess` rows after the first one, given the number of values per row of each column.
+    pub(super) fn remove(&mut self, excess: usize, widths: &[usize]) {
+        for ((_, column), width) in self.columns_mut().zip(widths) {
+            column.drain(*width..(1 + excess) * width);
+        }
+    }
+
     /// Returns the names of the joints whose positions exceed their limits by more than 1e-9 rad or m in any
     /// row.
     pub fn limits_exceeded<'m>(&self, model: &'m Model) -> Vec<&'m str> {
         const ROUNDING: f64 = 1e-9;
         let is_past = |j: usize, (lower, upper): (f64, f64)| {
-            let mut values = self.q.chunks_exact(model.nq()).map(|q| q[BASE_NQ + j]);
-            values.any(|q| q < lower - ROUNDING || q > upper + ROUNDING)
+            let removed = self.removed.iter().map(|removed| removed.joint_range(j));
+            let values = self.q.chunks_exact(model.nq()).map(|q| (q[BASE_NQ + j], q[BASE_NQ + j]));
+            let mut ranges = values.chain(removed);
+            ranges.any(|(lowest, highest)| lowest < lower - ROUNDING || highest > upper + ROUNDING)
         };
         let joints = model.joints().iter().enumerate();
         joints

@@ -288,7 +288,7 @@ impl PySimulation {
         resume: Option<&Bound<'_, PyCheckpoint>>,
     ) -> PyResult<Py<PyAny>> {
         let every = period(py, "checkpoint_every", checkpoint_every)?;
-        let stepper = self.start(py, Some(duration), resume)?;
+        let stepper = self.start(py, Some(duration), resume, false)?;
         let rows = stepper.row_counts(py)?; // the rows of the checkpoint
         let mut saver =
             checkpoint.map(|to| CheckpointCallback::new(to, self.systems.names.clone(), every, rows));
@@ -320,6 +320,10 @@ impl PySimulation {
     ///     or, without it, no planned end.
     /// resume : Checkpoint, optional
     ///     Checkpoint from which the run resumes with identical bits.
+    /// streamed : bool
+    ///     If True, memory is reserved for few rows only, and only the first and the last rows of ``resume``
+    ///     stay in memory, after they were checked; its columns may then be read from files in slices. Take
+    ///     the rows with :meth:`Stepper.columns`, and delete them with ``drop_rows(keep, checked=True)``.
     ///
     /// Returns
     /// -------
@@ -331,24 +335,25 @@ impl PySimulation {
     ///     If the duration is not positive and finite.
     /// CheckpointError
     ///     If the checkpoint belongs to a different simulation.
-    #[pyo3(signature = (*, duration=None, resume=None))]
+    #[pyo3(signature = (*, duration=None, resume=None, streamed=false))]
     fn start(
         &self,
         py: Python<'_>,
         duration: Option<f64>,
         resume: Option<&Bound<'_, PyCheckpoint>>,
+        streamed: bool,
     ) -> PyResult<PyStepper> {
         if let Some(duration) = duration {
             let checked = SimulationError::check_positive("duration", duration);
             checked.map_err(|error| error.into_python_with(py, None))?; // before the current run ends
         }
-        let from = resume.map(|checkpoint| checkpoint.get().read(py, &self.systems.names)).transpose()?;
+        let from = resume.map(|checkpoint| checkpoint.get().read(py, &self.systems, streamed)).transpose()?;
         let begin = from.as_ref().map_or(0.0, |from| from.0.time());
         if let Some(orbit) = &self.orbit {
             prepare(py, &*orbit.get().orbit, &[begin])?; // Ctrl-C can interrupt this call
         }
         let wall_s = resume.map_or(0.0, |checkpoint| checkpoint.get().wall_s);
-        let number = self.run.start(py, duration, from, wall_s)?;
+        let number = self.run.start(py, (duration, streamed), from, wall_s)?;
         Ok(PyStepper::new(self.run.clone(), number, Arc::clone(&self.systems)))
     }
 }

@@ -33,7 +33,7 @@ impl Drift {
 
 /// Sums of the attitude check over all intervals so far.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(in crate::simulation) struct Attitude {
+pub(crate) struct Attitude {
     residual: Drift,
     commutator: Drift,
     resolution: Drift,

@@ -6,7 +6,7 @@ use crate::dynamics::Momentum;
 use crate::spatial::Vec3;
 
 /// Largest errors of the balances since the first row, and the scales by which the errors are divided.
-#[derive(Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Balance {
     first: Option<First>,
     linear: f64,
@@ -27,7 +27,7 @@ pub(super) struct Balance {
 }
 
 /// Momentum, impulse and energy in the first row.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct First {
     time: f64,
     momentum: Momentum<f64>,

@@ -15,7 +15,7 @@ const ROUNDING: f64 = 40.0;
 /// Largest residuals so far after subtraction of the rounding bounds, and the scales of the residuals. Each
 /// pair has a linear entry (N) and an angular entry (N m).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(in crate::simulation) struct Residuals {
+pub(crate) struct Residuals {
     residual: [f64; 2],
     scale: [f64; 2],
     /// Largest relative truncation error due to rates and accelerations.

@@ -10,7 +10,7 @@ const ROUNDING: f64 = 4.0;
 
 /// Gap, m, between the recorded centre of mass and the position obtained by integrating the momentum.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(in crate::simulation) struct CenterOfMass {
+pub(crate) struct CenterOfMass {
     gap: Vec3<f64>,
     /// Square of the largest gap, m².
     largest: f64,

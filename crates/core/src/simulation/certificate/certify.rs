@@ -1,47 +1,25 @@
 //! Computation of a certificate from a trace.
 
-use super::attitude::Attitude;
-use super::balance::Balance;
-use super::base_rows::BaseRows;
-use super::center_of_mass::CenterOfMass;
 use super::checks::{ATTITUDE, CENTER, Certificate, JOINT_STEP_DOUBLING, PairChecks};
-use super::loop_opening::loop_opening;
+use super::removed_rows::row_checks;
+use super::row_checks::RowChecks;
 use super::step_doubling::StepDoubling;
-use super::trace_row::{RowReader, TraceRow};
 use crate::model::Model;
 use crate::simulation::trace::Trace;
 
 /// Computes the certificate of a run of `model` from the trace of the run. If the trace has no rows, all
 /// errors are zero.
 pub fn certify(model: &Model, trace: &Trace) -> Certificate {
-    let mut reader = RowReader::new(model, trace);
-    let mut balance = Balance::default();
-    let mut center = CenterOfMass::default();
-    let mut base_rows = BaseRows::new(model);
-    let mut attitude = Attitude::default();
-    let mut last = None;
-    for k in 0..reader.rows() {
-        let now = reader.row(k);
-        balance.add(&now);
-        // an impact is recorded as two rows at the same time, without a step between them
-        if let Some(before) = last.as_ref().filter(|before: &&TraceRow<'_>| before.time < now.time) {
-            center.add(&before.mass_motion(), &now.mass_motion());
-            if trace.rows_suffice {
-                base_rows.add(model, before, &now);
-                attitude.add(&before.base, &now.base);
-            }
-        }
-        last = Some(now);
-    }
+    let RowChecks { balance, center, residuals, attitude, is_free, opening, .. } =
+        row_checks(model, trace, trace.rows());
     // without external forces, the check of the centre of mass does not depend on the spacing of the rows
-    let is_free = trace.impulse.iter().all(|x| *x == 0.0);
     let doubling = StepDoubling { model, trace, size: balance.size(), gate: JOINT_STEP_DOUBLING };
     let center_error = center.error(balance.size(), CENTER);
     let pairs = if trace.rows_suffice {
         Some(PairChecks {
             center_of_mass_error_rel: center_error,
-            base_rows_residual_rel: base_rows.largest.residual(balance.size()),
-            base_rows_gate: base_rows.largest.gate(balance.size()),
+            base_rows_residual_rel: residuals.residual(balance.size()),
+            base_rows_gate: residuals.gate(balance.size()),
             attitude_consistency: attitude.consistency(ATTITUDE),
         })
     } else {
@@ -60,6 +38,6 @@ pub fn certify(model: &Model, trace: &Trace) -> Certificate {
         attitude_step_doubling_rad: trace.attitude_step_doubling,
         joint_step_doubling_rel: doubling.joints(),
         position_step_doubling_rel: doubling.origin(center.path()),
-        loop_opening: loop_opening(model, trace),
+        loop_opening: opening,
     }
 }

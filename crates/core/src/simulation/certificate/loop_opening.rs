@@ -3,13 +3,15 @@
 use crate::model::{BASE_NQ, Constraint, Model};
 use crate::simulation::columns::LOOPS;
 use crate::simulation::trace::Trace;
+use std::ops::Range;
 
 /// Returns the largest opening of a loop, m or rad, or deviation of a mimic joint from its leader, rad or m,
-/// in any row; `None` without loops and mimic joints.
-pub(super) fn loop_opening(model: &Model, trace: &Trace) -> Option<f64> {
+/// in the rows `range`; `None` without loops and mimic joints.
+pub(super) fn loop_opening(model: &Model, trace: &Trace, range: Range<usize>) -> Option<f64> {
     let start = LOOPS.parts.iter().find(|part| part.name == "opening").map_or(0, |part| part.start);
     let openings = trace.loops.iter().flat_map(|column| {
-        let rows = column.values.chunks_exact(column.width);
+        let rows =
+            column.values[column.width * range.start..column.width * range.end].chunks_exact(column.width);
         rows.flat_map(move |row| row[start..].iter().copied())
     });
     let mimics = model.closures().iter().filter_map(|closure| match closure.constraint {
@@ -18,7 +20,7 @@ pub(super) fn loop_opening(model: &Model, trace: &Trace) -> Option<f64> {
     });
     // φ = q − ratio q_leader − offset
     let deviations = mimics.flat_map(|(joint, leader, ratio, offset)| {
-        let rows = trace.q.chunks_exact(model.nq());
+        let rows = trace.q[model.nq() * range.start..model.nq() * range.end].chunks_exact(model.nq());
         rows.map(move |q| (q[BASE_NQ + joint] - ratio * q[BASE_NQ + leader] - offset).abs())
     });
     openings.chain(deviations).reduce(f64::max)

@@ -34,9 +34,17 @@ impl WorldRows {
 /// Computes the momentum and the kinetic energy of all systems at the times that their traces have in common.
 /// If only some traces have a row both before and after an event, the row after the event is used.
 pub fn world_rows(systems: &[(&Trace, &Model)]) -> WorldRows {
+    world_rows_between(systems, f64::NEG_INFINITY, f64::INFINITY)
+}
+
+/// Computes the rows of [`world_rows`] at the times `since ≤ t < until`, s.
+pub fn world_rows_between(systems: &[(&Trace, &Model)], since: f64, until: f64) -> WorldRows {
     let mut rows = WorldRows::default();
-    let mut at = vec![0; systems.len()];
-    let time = |at: &[usize], i: usize| systems[i].0.time.get(at[i]).copied();
+    let rows_before =
+        |t: f64| systems.iter().map(move |(trace, _)| trace.time.partition_point(|own| *own < t));
+    let mut at: Vec<usize> = rows_before(since).collect();
+    let ends: Vec<usize> = rows_before(until).collect();
+    let time = |at: &[usize], i: usize| systems[i].0.time[..ends[i]].get(at[i]).copied();
     while let Some(times) = (0..systems.len()).map(|i| time(&at, i)).collect::<Option<Vec<f64>>>() {
         let latest = times.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         if let Some(behind) = times.iter().position(|t| *t < latest) {
