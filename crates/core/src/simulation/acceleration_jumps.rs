@@ -56,21 +56,39 @@ impl AccelerationJumps {
     ) {
         let is_same = is_smooth && self.command.iter().zip(command).all(|(a, b)| *a == b.value());
         let sixth = if is_same { self.h / 6.0 } else { 0.0 };
-        let n = self.ended.len();
-        let (ended, jumps, fastest) = (&mut self.ended[..n], &mut self.jumps[..n], &mut self.fastest[..n]);
-        let (first, last) = (&step.first.acceleration[BASE_NV..][..n], &step.last.a[BASE_NV..][..n]);
-        let v = &step.start.v[BASE_NV..][..n];
-        for j in 0..n {
-            fastest[j] = fastest[j].max(v[j].value().abs());
-            let jump = (first[j].value() - ended[j]).abs() * sixth;
-            if jump > SMALL * fastest[j] {
-                jumps[j] += jump * jump.sqrt().sqrt();
-            }
-            ended[j] = last[j].value();
-        }
+        S::enter(
+            #[inline(always)]
+            || self.add_jumps(step, sixth),
+        );
         if !is_same {
             self.command.iter_mut().zip(command).for_each(|(to, from)| *to = from.value());
         }
         self.h = h;
+    }
+
+    /// Adds the jumps at the start of `step`, with the factor `sixth` that makes them velocities, s. Most
+    /// jumps are small; the first loop has no branches, so that it is vectorised.
+    #[inline(always)]
+    fn add_jumps<S: Scalar>(&mut self, step: &StepEnds<'_, S>, sixth: f64) {
+        let n = self.ended.len();
+        let (ended, jumps, fastest) = (&mut self.ended[..n], &mut self.jumps[..n], &mut self.fastest[..n]);
+        let (first, last) = (&step.first.acceleration[BASE_NV..][..n], &step.last.a[BASE_NV..][..n]);
+        let v = &step.start.v[BASE_NV..][..n];
+        let jump = |first: &S, ended: f64| (first.value() - ended).abs() * sixth;
+        let mut has_large = false;
+        for j in 0..n {
+            let speed = v[j].value().abs();
+            fastest[j] = if speed > fastest[j] { speed } else { fastest[j] };
+            has_large |= jump(&first[j], ended[j]) > SMALL * fastest[j];
+        }
+        if has_large {
+            for j in 0..n {
+                let jump = jump(&first[j], ended[j]);
+                if jump > SMALL * fastest[j] {
+                    jumps[j] += jump * jump.sqrt().sqrt();
+                }
+            }
+        }
+        ended.iter_mut().zip(last).for_each(|(ended, last)| *ended = last.value());
     }
 }

@@ -120,6 +120,9 @@ impl EnvironmentLoads {
 
     /// Returns the state of the current reference orbit at `t`, s; `None` without an orbit.
     pub(super) fn reference_state(&mut self, t: f64) -> Result<Option<OrbitState>, SimulationError> {
+        if self.cache.orbit().is_none() {
+            return Ok(None);
+        }
         Ok(self.cache.at(t, self.interval.1)?.state)
     }
 

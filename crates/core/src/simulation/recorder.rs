@@ -176,7 +176,9 @@ impl Recorder {
         loads: &mut EnvironmentLoads,
         t: f64,
     ) -> Result<(), SimulationError> {
-        self.shift = loads.shift(t, model)?;
+        if loads.local_reference().is_some() || self.shift.is_some() {
+            self.shift = loads.shift(t, model)?;
+        }
         let trace = &mut self.trace;
         if self.options.records_residual {
             let residual = loads.reference_residual(t)?;

@@ -226,6 +226,7 @@ impl Schedule {
     /// If the last grid point equals the planned end within the tolerance for comparing instants, the run ends
     /// at the grid point, so that its cuts are those of a run without a planned end. In floating point,
     /// `140 · 0.005` differs from `0.7`.
+    #[inline]
     pub(super) fn following(&self) -> Option<(Interval, Cursor)> {
         let Cursor { now, mut next_grid, mut next_event } = self.at;
         if self.duration.is_some_and(|duration| now >= duration - self.tolerance()) {

@@ -157,7 +157,10 @@ impl<S: Real> TreeState<S> {
 
     /// Returns true if configuration and velocity are finite in every lane.
     pub(crate) fn is_finite(&self) -> bool {
-        self.q.iter().chain(&self.v).all(|x| (0..S::LANES).all(|lane| x.lane(lane).is_finite()))
+        S::enter(
+            #[inline(always)]
+            || all_finite(&self.q) & all_finite(&self.v),
+        )
     }
 
     /// Returns the momentum, W axes, N s and N m s: the initial momentum plus the integral of the external
@@ -233,4 +236,17 @@ impl<S: Scalar> TreeState<S> {
     pub(super) fn values(&self) -> [Vec<f64>; 2] {
         [&self.q, &self.v].map(|x| x.iter().map(|x| x.value()).collect())
     }
+}
+
+/// Returns true if all numbers are finite in every lane. The loop does not end early, so that it is
+/// vectorised.
+#[inline(always)]
+fn all_finite<S: Real>(numbers: &[S]) -> bool {
+    let mut is_finite = true;
+    for x in numbers {
+        for lane in 0..S::LANES {
+            is_finite &= x.lane(lane).is_finite();
+        }
+    }
+    is_finite
 }
