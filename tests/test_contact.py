@@ -207,11 +207,14 @@ def test_spheres_that_touch_are_captured_and_the_force_ends() -> None:
         (lambda: oo.HuntCrossley(1e5, restitution=0.5, speed=1.0, dissipation=1.0), ["either"]),
         (lambda: oo.SpringDashpot(0.0, 1.0), ["stiffness", "more than 0"]),
         (lambda: oo.SpringDashpot(1.0, -1.0), ["damping", "at least 0"]),
-        (lambda: oo.Friction(-0.1), ["friction", "-0.1", "at least 0"]),
+        (lambda: oo.Friction(-0.1), ["static friction", "-0.1", "at least 0"]),
+        (lambda: oo.Friction(0.1, kinetic=-0.1), ["kinetic friction", "-0.1", "at least 0"]),
         (lambda: oo.Friction(0.1, 0.2), ["static", "0.1", "at least 0.2"]),
         (lambda: oo.Friction(0.1, stiffness=0.0), ["stiffness", "more than 0"]),
         (lambda: oo.Contact("a/b", "c/d", friction=oo.Friction(0.1)), ["no normal force"]),
         (lambda: oo.Contact("a/b", []), ["links_b", "empty"]),
+        (lambda: oo.Contact("a/b", "c/d", name=""), ["name", "not be empty"]),
+        (lambda: oo.Contact("a/b", "c/d", name="x\ny"), ["name", "line breaks"]),
         (lambda: pair(name="x", normal=HARD, start_overlapping=False) and oo.World(
             [moving("a", [0, 0, 0], [0, 0, 0])], contacts=[oo.Contact("a/body", "a/body", normal=HARD)]
         ), ["same link"]),

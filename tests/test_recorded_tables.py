@@ -63,6 +63,12 @@ def test_every_number_has_a_name_and_a_unit(reach: oo.Run) -> None:
     assert unit == "N m"
 
 
+def test_a_run_of_a_single_robot_has_no_names_of_systems(reach: oo.Run) -> None:
+    assert reach.out is not None
+    with pytest.raises(InputError, match="single robot, so there is no system 'x'; omit system"):
+        oo.read_run(reach.out).columns(system="x")
+
+
 def test_csv_has_all_digits(reach: oo.Run, tmp_path: Path) -> None:
     assert reach.out is not None
     done = onorbit("export", reach.out, "--csv", "a.csv", cwd=tmp_path)

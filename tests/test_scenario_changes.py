@@ -50,6 +50,7 @@ def test_entries_of_lists_are_changed_by_index() -> None:
         ("=1", InputError, "not a path of keys"),
         ("simulation.duration.x=1", InputError, "has no such entry"),
         ("environment[7].kind=drag", InputError, "environment"),
+        ("controls=[]\ncontrols[0].kind=pid", InputError, "controls is an empty list; set the whole list"),
         ("name=[1", InputError, "not YAML"),
     ],
 )
@@ -57,7 +58,7 @@ def test_an_invalid_change_is_an_error_that_names_it(
     assignment: str, error: type[Exception], says: str
 ) -> None:
     with pytest.raises(error, match=says.replace("[", r"\[")):
-        load("humanoid_reach", changes=parsed_changes([assignment]))
+        load("humanoid_reach", changes=parsed_changes(assignment.split("\n")))
 
 
 def test_the_command_line_changes_the_scenario_of_the_run(tmp_path: Path) -> None:

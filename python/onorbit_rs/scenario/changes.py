@@ -116,6 +116,8 @@ def _entry(inner: Any, step: str | int, path: str, at: Location, following: str 
 def _index(inner: list[Any], step: str | int, path: str, at: Location) -> int:
     """Return the index of an entry of a list; raise InputError if there is no such entry."""
     if not isinstance(step, int) or step >= len(inner):
+        if not inner:
+            raise _invalid(path, f"{_written(at)} is an empty list; set the whole list")
         what = f"{_written(at) or 'the scenario'} is a list with {len(inner)} entries"
         raise _invalid(path, f"{what}; give an index from [0] to [{len(inner) - 1}]")
     return step

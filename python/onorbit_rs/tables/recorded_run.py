@@ -64,9 +64,11 @@ class RecordedRun:
         Raises
         ------
         InputError
-            If the run has several systems and ``system`` is None or unknown.
+            If the run has several systems and ``system`` is None, or if it has no such system.
         """
-        return dict(system_in(self._arrays, self._checked(system)).arrays if self.systems else self._arrays)
+        if not self.systems and system is None:
+            return dict(self._arrays)
+        return dict(system_in(self._arrays, self._checked(system)).arrays)
 
     def table(self, system: str | None = None) -> tuple[list[Label], Any]:
         """Return the labels of the numbers in a row, and the rows, (T, n); the first number is the time, s.
@@ -197,6 +199,13 @@ class RecordedRun:
         return Names(joints, self._names.get(f"{prefix}body_names", []), units)
 
     def _checked(self, system: str | None) -> str:
+        if not self.systems:
+            raise InputError(
+                f"the run has a single robot, so there is no system {system!r}; omit system",
+                name="system",
+                got=system,
+                expected=[],
+            )
         if system not in self.systems:
             known = ", ".join(self.systems)
             what = "no system is given" if system is None else f"there is no system {system!r}"

@@ -141,6 +141,7 @@ impl Friction {
     /// [`ContactError::Parameter`] for a coefficient or a damping below 0, a static coefficient below the
     /// kinetic one, a stiffness that is not positive, or a parameter that is not finite.
     pub fn check(&self) -> Result<(), ContactError> {
+        at_least("coefficient of static friction", self.static_coefficient, 0.0, "")?;
         at_least("coefficient of kinetic friction", self.kinetic_coefficient, 0.0, "")?;
         at_least("coefficient of static friction", self.static_coefficient, self.kinetic_coefficient, "")?;
         at_least("coefficient of torsional friction", self.torsional, 0.0, "m")?;

@@ -35,8 +35,9 @@ use std::sync::Arc;
 /// Raises
 /// ------
 /// WorldError, DtypeError
-///     If a side has no links, if there is friction without a normal force, if an ``ImpactLaw`` is combined
-///     with ``friction`` or ``start_overlapping``, or if an argument has the wrong type.
+///     If a side has no links, if the name is empty or contains control characters, if there is friction
+///     without a normal force, if an ``ImpactLaw`` is combined with ``friction`` or ``start_overlapping``, or
+///     if an argument has the wrong type.
 #[pyclass(name = "Contact", frozen, module = "onorbit_rs")]
 pub(crate) struct PyContact {
     /// Name of the contact.
@@ -76,6 +77,13 @@ impl PyContact {
         let default = || format!("{}|{}", links_a.join(","), links_b.join(","));
         let name = name.map(|name| text(name, "name", "the name of a contact (str), such as 'touch'"));
         let name = name.transpose()?.unwrap_or_else(default);
+        if name.is_empty() || name.contains(char::is_control) {
+            let message = format!(
+                "the name of a contact is {name:?}; it must not be empty and must not contain line breaks or other \
+                 control characters"
+            );
+            return Err(raise(py, "WorldError", &message, &fields!(py, "name": name)));
+        }
         let law = normal.map(normal_law).transpose()?;
         if let (Some(Law::Impact(_)), true) = (&law, friction.is_some() || start_overlapping) {
             let (excluded, remedy) = match friction {
