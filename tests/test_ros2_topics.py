@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from typing import Any
+from xml.etree import ElementTree as xml
 
 import numpy as np
 import pytest
@@ -137,6 +138,21 @@ def test_the_frames_of_the_orbit_are_those_of_the_trace() -> None:
     # ω turns the radius: dr/dt without its radial part is ω × r
     radial = x * (v_eci @ x)
     np.testing.assert_allclose(np.cross([w.x, w.y, w.z], r_eci), v_eci - radial, rtol=1e-9, atol=1e-6)
+
+
+def test_the_description_contains_mimic_joints_but_no_shapes_that_urdf_lacks() -> None:
+    hand = xml.fromstring(urdf_text(oo.robots.load("four_bar_gripper")))
+    mimics = {joint.get("name"): joint.find("mimic") for joint in hand.iter("joint")}
+    model = oo.robots.load("four_bar_gripper")
+    for joint in model.joints:
+        found = mimics[joint.name]
+        given = None if found is None else (found.get("joint"), found.get("multiplier"), found.get("offset"))
+        assert given == (joint.mimic and (joint.mimic[0], repr(joint.mimic[1]), repr(joint.mimic[2])))
+    assert any(joint.mimic for joint in model.joints)
+    gear = oo.Model.rigid_body(1.0, np.eye(3)).with_collision("base", oo.Shape.torus(0.1, 0.01))
+    gear = gear.with_collision("base", oo.Shape.sphere(0.1))
+    (geometry,) = xml.fromstring(urdf_text(gear)).iter("geometry")
+    assert [shape.tag for shape in geometry] == ["sphere"]
 
 
 @pytest.mark.filterwarnings("ignore:the inertia of link")

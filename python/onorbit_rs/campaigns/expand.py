@@ -131,7 +131,9 @@ class Expander:
                 yield self._number(path, leaf, change)
             return
         if isinstance(value, dict) or (len(value) != 3 and change.how != "scale"):
-            raise self.error(path, "'vector: direction' requires a list of three components; omit it")
+            raise self.error(
+                path, "'vector: direction' applies only to a list of three components; omit 'vector'"
+            )
         names = tuple(leaf.name for leaf in leaves)
         distribution = self._numeric(path, change)
         if change.how == "scale":

@@ -235,9 +235,9 @@ def write_failures(folder: CampaignFolder, plan: Plan, columns: dict[str, list[A
 
 def _checked_workers(workers: int | None) -> int:
     if isinstance(workers, bool) or not isinstance(workers, int | None):
-        raise DtypeError(f"workers is {workers!r}; it must be a positive integer, or None for every core")
+        raise DtypeError(f"workers is {workers!r}; it must be a positive integer, or None to use all cores")
     if workers is not None and workers < 1:
-        raise InputError(f"workers is {workers}; it must be at least 1, or None for every core")
+        raise InputError(f"workers is {workers}; it must be at least 1, or None to use all cores")
     return workers or os.cpu_count() or 1
 
 

@@ -40,7 +40,10 @@ class Violation:
 
 
 def violations(time: Floats, gap: Floats, links: Sequence[tuple[str, str]]) -> Iterator[Violation]:
-    """Yield the intervals in which ``gap`` (T,), m, is negative; ``links`` are the nearest pairs."""
+    """Yield the intervals in which ``gap`` (T,), m, is negative.
+
+    ``links`` holds the nearest pair of links in each row.
+    """
     inside = np.concatenate([[False], gap < 0.0, [False]])
     edges = np.flatnonzero(inside[1:] != inside[:-1])
     for first, end in zip(edges[::2], edges[1::2], strict=True):

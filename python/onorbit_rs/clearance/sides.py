@@ -36,7 +36,7 @@ class Link:
 
     @property
     def path(self) -> str:
-        """``SYSTEM/LINK``, or ``LINK`` for one robot."""
+        """Path of the link: ``SYSTEM/LINK``, or ``LINK`` if there is only one robot."""
         return f"{self.system}/{self.name}" if self.system else self.name
 
 

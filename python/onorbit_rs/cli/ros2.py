@@ -48,7 +48,7 @@ PriorityOption = Annotated[
 ]
 LogOption = Annotated[
     Path | None,
-    typer.Option(metavar="FILE", help="Write received commands, to replay with onorbit run."),
+    typer.Option(metavar="FILE", help="Write the received commands, for replay with onorbit run --commands."),
 ]
 
 

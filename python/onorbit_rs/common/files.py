@@ -39,7 +39,7 @@ def open_to_read(file: Path) -> BinaryIO:
 
 
 def read_bounded(stream: BinaryIO, most: int) -> bytes:
-    """Return the content of a stream; raises a ValueError if it has more than ``most`` bytes."""
+    """Return the content of a stream; raise ValueError if it has more than ``most`` bytes."""
     size = os.fstat(stream.fileno()).st_size
     content = b"" if size > most else stream.read(size + 1)
     if size < len(content) <= most:  # the file has grown since its size was read

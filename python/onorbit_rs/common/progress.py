@@ -109,7 +109,10 @@ def doing(name: str, *, quiet: bool) -> Iterator[Callable[[str], None]]:
 
 
 class _LineMover:
-    """Prints lines about the simulated time; the speed of a resumed run does not include earlier time."""
+    """Prints lines about the simulated time.
+
+    The real-time factor of a resumed run counts from its checkpoint.
+    """
 
     def __init__(self, lines: ProgressLines) -> None:
         self._lines = lines
@@ -123,7 +126,10 @@ class _LineMover:
 
 
 class _Mover:
-    """Moves the bar; the speed of a resumed run does not include the time before its checkpoint."""
+    """Updates the progress bar.
+
+    The real-time factor of a resumed run counts from its checkpoint.
+    """
 
     def __init__(self, bar: Any, task: Any) -> None:
         self._bar, self._task = bar, task

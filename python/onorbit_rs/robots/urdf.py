@@ -18,12 +18,17 @@ if TYPE_CHECKING:
     from onorbit_rs._core import Body, Frame, Joint, Model, Visual
 
 
-def urdf_text(model: Model, names: Mapping[str, str] | None = None) -> str:
-    """Return a robot as URDF, with shapes, limits and losses; named frames become links without mass.
+_WITHOUT_ELEMENT = "half_space", "hull", "cone", "torus"
+"""Kinds of shapes for which URDF has no element."""
 
-    Lengths and angles are written in full precision. Paths of meshes are absolute. Half-spaces and convex
-    pieces of meshes, static friction and rotor inertia, which URDF does not have, are omitted. The spring of
-    a joint is written as the element ``<spring>``, an extension that other readers of URDF ignore.
+
+def urdf_text(model: Model, names: Mapping[str, str] | None = None) -> str:
+    """Return the URDF of a robot; named frames become links without mass.
+
+    Lengths and angles are written in full precision. Paths of meshes are absolute. URDF has neither cones,
+    tori, half-spaces and convex pieces of meshes nor closed loops, static friction and rotor inertia; these
+    are omitted. Capsules and the springs of joints are written as the elements ``<capsule>`` and
+    ``<spring>``, extensions that other readers of URDF may not know.
 
     Parameters
     ----------
@@ -40,9 +45,9 @@ def urdf_text(model: Model, names: Mapping[str, str] | None = None) -> str:
     """
     named = {name: name for name in _all_names(model)} | dict(names or {})
     robot = xml.Element("robot", name=model.name)
-    shapes = [("visual", shape) for shape in model.visuals] + [
-        ("collision", shape) for shape in model.collisions if shape.kind not in ("half_space", "hull")
-    ]
+    shapes = [("visual", shape) for shape in model.visuals]
+    shapes += [("collision", shape) for shape in model.collisions]
+    shapes = [(tag, shape) for tag, shape in shapes if shape.kind not in _WITHOUT_ELEMENT]
     for body in model.bodies:
         link = _link(robot, named, body.name, shapes)
         _add_inertial(link, body)
@@ -134,6 +139,9 @@ def _add_joint(robot: xml.Element, named: Mapping[str, str], joint: Joint) -> No
         unlimited = {name: "1e+300" for name in ("velocity", "effort") if name not in given}
         xml.SubElement(element, "limit", given | unlimited)
     xml.SubElement(element, "dynamics", damping=repr(joint.damping), friction=repr(joint.friction))
+    if joint.mimic is not None:
+        leader, multiplier, offset = joint.mimic
+        xml.SubElement(element, "mimic", joint=leader, multiplier=repr(multiplier), offset=repr(offset))
     if joint.stiffness or joint.cubic_stiffness:
         names = "stiffness", "cubic_stiffness", "rest_position"
         xml.SubElement(element, "spring", {name: repr(float(getattr(joint, name))) for name in names})

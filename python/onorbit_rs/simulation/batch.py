@@ -58,10 +58,10 @@ def run_batch(
         runs are then ended.
     """
     if isinstance(threads, bool) or not isinstance(threads, int | None):
-        message = f"threads is {threads!r}; it must be a positive integer, or None for every core"
+        message = f"threads is {threads!r}; it must be a positive integer, or None to use all cores"
         raise DtypeError(message)
     if threads is not None and threads < 1:
-        raise InputError(f"threads is {threads}; it must be at least 1, or None for every core")
+        raise InputError(f"threads is {threads}; it must be at least 1, or None to use all cores")
     return _traces(iter(simulations), duration, threads or os.cpu_count() or 1)
 
 

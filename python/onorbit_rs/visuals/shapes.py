@@ -135,7 +135,7 @@ def _reach(model: Model) -> float:
 
 
 def _along(end: Floats) -> Floats:
-    """Return the pose (4, 4) of a cylinder, along z, that extends from the origin to the point ``end``."""
+    """Return the pose (4, 4) of a cylinder whose axis, its own z axis, runs from the origin to ``end``, m."""
     z = end / np.linalg.norm(end)
     x = np.cross(z, np.eye(3)[np.argmin(np.abs(z))])
     x /= np.linalg.norm(x)

@@ -82,8 +82,8 @@ pub enum ControlError {
     )]
     UnknownLoad { control: String },
     #[error(
-        "control '{control}' has a load or internal forces, but its law does not use them; use computed torque of a \
-         tool (or, for internal forces, of joints)"
+        "control '{control}' has a load or internal forces, but its law does not use them; use the computed \
+         torque of a tool (or, for internal forces, of joints)"
     )]
     UnusedLoad { control: String },
     #[error("control '{control}' drives no joint; name at least one joint")]

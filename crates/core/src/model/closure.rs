@@ -49,7 +49,8 @@ impl Closure {
         }
     }
 
-    /// Returns the directions of [`LoopKind::directions`]; the list is empty for mimic joints.
+    /// Returns the directions in which the closure transmits forces and moments, as [`LoopKind::directions`];
+    /// the list is empty for mimic joints.
     pub fn directions(&self) -> &'static [(usize, bool)] {
         match &self.constraint {
             Constraint::Frames { kind, .. } => kind.directions(),

@@ -69,7 +69,7 @@ def select(only: Sequence[str] = ()) -> list[Case]:
     Raises
     ------
     InputError
-        If no case matches a word.
+        If a word matches no case.
     """
     families = ", ".join(dict.fromkeys(case.family for case in CASES))
     for word in only:

@@ -191,7 +191,7 @@ def massless() -> Any:
 
 
 def at_stops() -> tuple[float, float]:
-    """Return the relative errors of velocity and momentum if a capture pushes a joint into its stop."""
+    """Return the relative errors of velocity and momentum for a capture that pushes a joint into its stop."""
     errors = []
     for restitution in (0.0, RESTITUTION):
         first, second = arm_and_target(straight(4, lower=-1.0, upper=0.5), [0.5, 0.2, -0.3, 0.1])

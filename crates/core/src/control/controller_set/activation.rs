@@ -1,4 +1,4 @@
-//! Start and stop of the controls.
+//! Starts and stops controls.
 
 use super::ControllerSet;
 use crate::control::check::check_disjoint;
