@@ -22,7 +22,7 @@ class Files:
     """Opens files that one xacro file includes or loads, and finds packages."""
 
     def __init__(self, file: Path, package_paths: Sequence[Path], work: Work) -> None:
-        """Allow files to be read only in the packages of ``file``, ``package_paths`` and those found later."""
+        """Allow reading in the packages of ``file``, in ``package_paths`` and in packages found later."""
         self._above = list(file.absolute().parents)
         self._given = [folder.absolute() for folder in package_paths]
         self._work = work
