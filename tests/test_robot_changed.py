@@ -125,7 +125,7 @@ def test_compare_identifies_robots_by_their_content(urdf: Path, tmp_path: Path) 
     unknown = oo.compare(str(tmp_path / "before"), scenario(urdf)).notes[1]
     assert (
         "cannot check whether the joints of both robots are equal" in unknown
-        and "was changed since" in unknown
+        and "has changed since" in unknown
     )
     # both in memory: the joints can be compared
     assert len(oo.compare(before, oo.run(scenario(urdf))).notes) == 1

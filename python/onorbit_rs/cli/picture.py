@@ -74,7 +74,7 @@ def save_picture(saved: SavedRun, summary: dict[str, Any], picture: Path, view: 
     Raises
     ------
     OnOrbitError
-        If the trace, the scenario or a robot cannot be read, or the robot was changed since the run.
+        If the trace, the scenario or a robot cannot be read, or the robot has changed since the run.
     OutputFolderError
         If the file cannot be written.
     """

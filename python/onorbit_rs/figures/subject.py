@@ -36,7 +36,7 @@ class Subject:
     trace : Trace
         Trace of the run.
     model : Model or None
-        Robot; None if its file cannot be read or was changed since the run.
+        Robot; None if its file cannot be read or has changed since the run.
     tools : tuple of Tool
         Controlled frames.
     joint_controls : dict

@@ -30,7 +30,7 @@ class WorldSubject:
     trace : WorldTrace
         Trace of the run.
     models : dict of Model
-        Robots by system, except those whose file cannot be read or was changed since the run.
+        Robots by system, except those whose file cannot be read or has changed since the run.
     events : tuple of EventMark
         Events that happened; figures mark the captures and releases.
     connections : tuple of Connection

@@ -172,7 +172,7 @@ def read_checkpoint(folder: Path, digest: str) -> SavedCheckpoint:
     ------
     CheckpointError
         If there is no checkpoint, its files were changed or damaged, or the scenario or a file named in it
-        was changed since the checkpoint was written.
+        has changed since the checkpoint was written.
     """
     path = folder / CHECKPOINT
     if not has_checkpoint(folder):

@@ -27,7 +27,7 @@ def scene_of_run(saved: SavedRun, summary: dict[str, Any], at_s: float) -> Scene
     OnOrbitError
         If the trace, the scenario, a robot, the orbit or the Earth cannot be read.
     ModelError
-        If a robot was changed since the run.
+        If a robot has changed since the run.
     """
     scenario = saved.scenario()
     if isinstance(scenario, WorldScenario):

@@ -71,7 +71,7 @@ def export_mcap(
     OutputFolderError
         If the file cannot be written.
     OnOrbitError
-        If the folder or its robot cannot be read, or the robot was changed since the run.
+        If the folder or its robot cannot be read, or the robot has changed since the run.
     """
     source = recorded(run, models)
     with replacing(Path(file)) as temporary, temporary.open("wb") as stream:

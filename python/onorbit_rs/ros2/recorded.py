@@ -57,7 +57,7 @@ def recorded(source: Source, models: Models | None = None) -> Recorded:
     DtypeError
         If ``source`` has another type.
     OnOrbitError
-        If the folder or its robot cannot be read, or the robot was changed since the run.
+        If the folder or its robot cannot be read, or the robot has changed since the run.
     """
     if isinstance(source, (str, os.PathLike)):
         source = _read(Path(source))

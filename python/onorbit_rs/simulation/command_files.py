@@ -27,7 +27,7 @@ def saved_commands(folder: OutputFolder) -> list[Command]:
     Raises
     ------
     IntegrityError
-        If the file was changed since the run wrote it.
+        If the file has changed since the run wrote it.
     """
     manifest = folder.manifest
     if manifest is None or COMMANDS not in manifest.files:

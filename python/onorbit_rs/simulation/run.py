@@ -98,7 +98,7 @@ class Run:
         Raises
         ------
         OnOrbitError
-            If the robot's file is missing, cannot be read, or was changed since the run (``ModelError``).
+            If the robot's file is missing, cannot be read, or has changed since the run (``ModelError``).
         AttributeError
             If the scenario has several systems.
         """

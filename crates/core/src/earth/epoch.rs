@@ -168,11 +168,11 @@ fn noon_of_2000() -> Instant {
     Instant::from_gregorian_tai_at_noon(2000, 1, 1)
 }
 
-/// Description of the fault of a text that ends with a time scale but does not begin with a date and a time.
+/// Message about a text that ends with a time scale but does not begin with a date and a time.
 const OTHER_FORM: &str =
     "the part before the time scale is not a date and a time of the form YYYY-MM-DDThh:mm:ss.s";
 
-/// Returns a description of the fault of a text that does not end with a time scale.
+/// Returns a message that says what is wrong with a text that does not end with a time scale.
 fn without_scale(text: &str) -> String {
     let time = text.split_once(['T', ' ']).map_or("", |(_, time)| time);
     let fault = if time.contains(['+', '-']) {

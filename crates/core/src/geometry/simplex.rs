@@ -10,7 +10,8 @@ pub(super) struct Corner {
     pub(super) apart: Vec3<f64>,
 }
 
-/// Up to four corners, the newest last, with the weights of the point that is nearest to the origin.
+/// Simplex with up to four corners, the newest last, and the barycentric coordinates `weights` of its point that
+/// is nearest to the origin.
 pub(super) struct Simplex {
     corners: [Corner; 4],
     weights: [f64; 4],

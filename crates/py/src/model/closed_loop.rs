@@ -136,8 +136,8 @@ impl PyLoop {
         self.closing.length
     }
 
-    /// True if a simulation starts in the nearest configuration that closes the loop; False if a start that
-    /// does not close the loop is an error.
+    /// True if a simulation starts in the nearest configuration that closes the loop; False if an initial
+    /// state that does not close the loop is an error.
     #[getter]
     fn project(&self) -> bool {
         self.closing.project

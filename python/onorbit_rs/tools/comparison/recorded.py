@@ -71,7 +71,7 @@ class Recorded:
             model = self.scenario.robot.build(self.scenario)
         if has_changed(model, self.fingerprint):
             raise ModelError(
-                f"{self.robot} was changed since {self.name} was recorded; restore the robot or run the "
+                f"{self.robot} has changed since {self.name} was recorded; restore the robot or run the "
                 "scenario again",
                 path=str(self.robot),
             )

@@ -157,7 +157,7 @@ def trees() -> Any:
 
 
 def bundled(name: str) -> Any:
-    """Return the largest deviations for a bundled robot."""
+    """Return the largest deviations of a bundled robot from MuJoCo, as :func:`compare`."""
     return compare(oo.robots.load(name), tree_of(oo.robots.path(name)), 1)
 
 

@@ -110,7 +110,8 @@ impl<S: Real> ColumnKernel<S> for UnitResponses<'_, S> {
     }
 }
 
-/// Returns the value of one right-hand side, `column`, from a scalar with one right-hand side per lane.
+/// Returns the result for the right-hand side `column`: lane `column` of `x` if `S` has one lane. Otherwise, `x`
+/// holds a single right-hand side, and all of its lanes, which are different states, are returned.
 #[inline(always)]
 fn of_column<S: Real, R: Real>(x: R, column: usize) -> S {
     match S::LANES {
@@ -120,7 +121,7 @@ fn of_column<S: Real, R: Real>(x: R, column: usize) -> S {
 }
 
 /// Returns a scalar that has the number returned by `of` for each row in the lane of its right-hand side; the
-/// lane of the first row is `first`. The other lanes are zero.
+/// lane of the first row is `first`. The other lanes are zero. If `S` has several lanes, there is a single row.
 #[inline(always)]
 fn to_columns<S: Real, R: Real>(
     rows: &[Row<S>],
