@@ -28,7 +28,10 @@ def _side(value: object) -> object:
     """Return one or several patterns as a list."""
     found = value if isinstance(value, list) else [value]
     if not found or not all(isinstance(link, str) for link in found):
-        raise invalid(f"must be a link or a pattern, such as gripper*, or a list with at least one of them, not {shortened(value)}")
+        raise invalid(
+            "must be a link or a pattern, such as gripper*, or a list with at least one of them, not "
+            f"{shortened(value)}"
+        )
     return found
 
 

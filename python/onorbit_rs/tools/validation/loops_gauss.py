@@ -97,7 +97,10 @@ def expected_capture(first: Craft, second: Craft) -> Array:
 
 
 def capture_with_gripper(seed: int) -> tuple[float, float, float]:
-    """Return the relative errors of velocity, lost energy and momentum for a capture by a gripper with loops."""
+    """Return the relative errors of velocity, energy loss and momentum in a capture.
+
+    The gripper has closed loops.
+    """
     first, second = gripper(seed), random_craft(seed)
     systems = [oo.System(name, c.model, c.q, c.v) for name, c in zip("ab", (first, second), strict=True)]
     event = oo.Capture("grasp", f"a/{first.frame}", f"b/{second.frame}", at=0.0)

@@ -40,7 +40,7 @@ def wheel(**joint: Any) -> oo.Model:
 
 
 def released(model: oo.Model, deflection: float, duration: float, time_step: float) -> oo.Trace:
-    """Return a run in which the only joint starts at rest, with its spring deflected by ``deflection``, rad."""
+    """Return a run in which the only joint starts at rest, with a spring deflected by ``deflection``, rad."""
     q = model.neutral()
     q[7] = model.joints[0].rest_position + deflection
     simulation = oo.Simulation(model, q, np.zeros(model.nv), time_step=time_step)
