@@ -89,8 +89,9 @@ def add_sunlight(canvas: Canvas, camera: Camera, sun: Floats, triangles: Floats)
     nearest.add_triangles(triangles, np.empty((len(triangles), 0)))
     for rows, own in zip(blocks, points, strict=True):
         light = canvas.color[rows][is_lit[rows]].astype(np.float64)
-        free = _free(view, nearest.inverse_depth, own, light[:, 6])
-        canvas.color[rows][is_lit[rows], :3] += free[:, None] * light[:, 3:6]
+        _, from_sun, cosine = np.split(light, [3, 6], axis=1)
+        free = _free(view, nearest.inverse_depth, own, cosine[:, 0])
+        canvas.color[rows][is_lit[rows], :3] += free[:, None] * from_sun
 
 
 def _points(canvas: Canvas, camera: Camera, rows: slice, is_lit: NDArray[np.bool_]) -> Floats:
