@@ -292,7 +292,7 @@ def _reduced_contact(contact: ContactTrace) -> tuple[Any, ...]:
 
 
 def _reduced_loop(loop: LoopTrace) -> tuple[Any, ...]:
-    """Return the pickled form of the recorded forces of a closed loop."""
+    """Return the pickled form of the recorded values of a closed loop."""
     from onorbit_rs.output.saved_column import reduced_loop
 
     return reduced_loop(loop)
@@ -306,7 +306,7 @@ def _model_html(model: Model) -> str | None:
 
 
 def _world_html(world: World) -> str | None:
-    """Return the systems of a world and what acts on them as HTML for notebooks."""
+    """Return the systems, orbit, effects, contacts and events of a world as HTML for notebooks."""
     from onorbit_rs.displays import or_plain, world_html
 
     return or_plain(world_html, world)

@@ -35,9 +35,9 @@ class                       built-in               fields: cause
 ``OutputNotWritableError``  ``PermissionError``    ``path``: the folder is not writable
 ``ScenarioError``           ``ValueError``         ``file, path, line, errors``: an invalid scenario
 ``QuantityError``           ``ValueError``         ``text, expected``: ``"51.6 def"`` is not an angle
-``CampaignError``           ``RuntimeError``       ``reason``: a cluster that does not answer or is lost
+``CampaignError``           ``RuntimeError``       ``reason``: a cluster or workers that fail or are lost
 ``ViewerError``             ``RuntimeError``       ``reason``: the viewer does not start or cannot be shown
-``Ros2Error``               ``RuntimeError``       ``reason``: a domain, messages, packages or a bag
+``Ros2Error``               ``RuntimeError``       ``reason``: a package, a domain, messages or a node
 ==========================  =====================  ==========================================================
 
 :class:`RunInterrupted` is a ``KeyboardInterrupt`` (Ctrl-C), so that neither ``except Exception`` nor
@@ -172,7 +172,7 @@ class ElementSetError(OrbitError):
 
 
 class Sgp4Error(OrbitError):
-    """SGP4 has no state at ``time``, s from the epoch; ``code`` is the error code of the SGP4 reference code.
+    """SGP4 has no state at ``time``, s from the epoch; ``code`` is the code of the reference implementation.
 
     Codes: 1 mean eccentricity, 2 mean motion, 3 perturbed eccentricity, 4 semi-latus rectum, 6 decayed; code
     5 does not occur. ``got`` is the offending value.
@@ -265,7 +265,7 @@ class CompareError(OnOrbitError, ValueError):
 
 
 class CheckpointError(OnOrbitError, ValueError):
-    """Checkpoint that is invalid, or was written with another scenario, version or instruction set."""
+    """Missing or invalid checkpoint, or one of another scenario, version or instruction set."""
 
     path: Any = None
 
@@ -281,7 +281,7 @@ class ConvergenceError(OnOrbitError, ArithmeticError):
 
 
 class NotFoundError(OnOrbitError, FileNotFoundError):
-    """No such file or folder, bundled robot or bundled scenario, or no run in a folder."""
+    """A file, a folder, a package or a bundled item does not exist, or a folder contains no run."""
 
     path: Any = None
     kind: Any = None
@@ -346,7 +346,7 @@ class QuantityError(OnOrbitError, ValueError):
 
 
 class CampaignError(OnOrbitError, RuntimeError):
-    """The cluster of a campaign does not answer, has no workers or other software, or is lost."""
+    """The cluster or the workers of a campaign do not start, cannot run its cases, or are lost."""
 
     reason: Any = None
 
@@ -358,13 +358,13 @@ class ViewerError(OnOrbitError, RuntimeError):
 
 
 class Ros2Error(OnOrbitError, RuntimeError):
-    """A ROS 2 domain cannot be joined, messages cannot be encoded, or a bag cannot be read."""
+    """A package for ROS messages is not installed, a domain cannot be joined, or a node cannot go on."""
 
     reason: Any = None
 
 
 class RunInterrupted(_Fields, KeyboardInterrupt):
-    """Ctrl-C or other ``KeyboardInterrupt`` at ``time``, s, of a run; ``trace`` has the rows before it."""
+    """Ctrl-C or another ``KeyboardInterrupt`` at ``time``, s, of a run; ``trace`` has the rows before it."""
 
     time: Any = None
     trace: Any = None

@@ -12,9 +12,9 @@
 //! |-|-|-|
 //! | reduced model `M*`, `c*`, `Q*`; generalized Jacobian `Jg` and drift `d` | `dynamics/free_floating.rs` | `kernel`, `reduced_inertia`, `reduce_task` |
 //! | signed distance of convex shapes `max over n of (min bᵀn − max aᵀn)` | `geometry/convex.rs` | `closest` |
-//! | weights of contact points by area `(A_{i−1} + A_i)/2A`, by tilt | `geometry/polygon.rs` | `weights` |
+//! | weights of contact points by area `(A_{i−1} + A_i)/2A` | `geometry/polygon.rs` | `weights` |
 //! | forward dynamics by ABA | `dynamics/aba.rs` | `kernel` |
-//! | joint traversed backwards `X_cp(q) = X₁⁻¹ R(−a, q) X₀⁻¹` | `model/reroot.rs` | `reversed` |
+//! | joint with exchanged parent and child `X_cp(q) = X₁⁻¹ R(−a, q) X₀⁻¹` | `model/reroot.rs` | `reversed` |
 //! | spring at a joint `τ = −(k + k₃ d²) d` | `model/joint_spring.rs` | `JointSpring::torque` |
 //! | velocity after a capture `M v⁺ = Σ J_kᵀ I_k V_k⁻` | `world/impulse.rs` | `connected_velocity` |
 //! | momentum projection `v_b = Mbb⁻¹ (h − Mbm q̇)` | `dynamics/momentum.rs` | `projected_base_twist` |
@@ -23,8 +23,8 @@
 //! | elastic-plastic friction `ż = v` inside the cone, `z = μ N/σ d` on it | `contact/friction.rs` | `Friction::after` |
 //! | step of a contact `h = π/(N ω) √(x/x_max)` | `simulation/contacts/step_length.rs` | `longest_step` |
 //! | Kepler's equation, ellipse and hyperbola | `orbit/kepler/anomaly.rs` | `solve_ellipse`, `solve_hyperbola` |
-//! | `F_k = m_k [g(r_k) − r̈_ref]`; only the tide if `gravity_mode: carried` | `environment/differential_gravity.rs` | `GravityMode`, `DifferentialGravity::add` |
-//! | common acceleration of drag and light `ΣF/Σm`, removed in `carried` mode | `simulation/environment_loads.rs` | `add_relative_to_reference` |
+//! | `F_k = m_k [g(r_k) − r̈_ref]`; only its tidal part if `gravity_mode: carried` | `environment/differential_gravity.rs` | `GravityMode`, `DifferentialGravity::add` |
+//! | common acceleration `ΣF/Σm` by drag and radiation pressure, removed in `carried` mode | `simulation/environment_loads.rs` | `add_relative_to_reference` |
 //! | gravity-gradient torque `T = 3μ/r³ r̂ × I r̂`, `T_i = −ε_ijk (I G)_jk` | `environment/gravity_gradient.rs` | `GravityGradient::add`, `torque` |
 //! | drag on a face `F = −½ ρ C_D a u`: `a = A (n·u)₊` | `environment/surfaces/face.rs` | `Face::add_drag` |
 //! | sums over the faces `−Σ a u`, `−Σ a c × u` | `environment/surfaces/sums.rs` | `DragSums::wrench` |

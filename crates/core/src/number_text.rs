@@ -1,6 +1,7 @@
 //! Formatting of numbers in messages: short texts without rounding noise.
 
-/// Number of significant digits in a message; the integer part is always printed in full.
+/// Largest number of significant digits in a message, except that the integer part of a number below
+/// [`LARGE`] is printed in full.
 const DIGITS: usize = 6;
 /// Magnitude from which numbers are printed with an exponent, because the integer part would be too long to
 /// read.
@@ -8,10 +9,10 @@ const LARGE: f64 = 1e9;
 /// Magnitude below which numbers are printed with an exponent, because there would be too many leading zeros.
 const SMALL: f64 = 1e-4;
 
-/// Formats a number with at most six significant digits: `1.4`, `700000`, `1e-300`.
+/// Formats a number with up to six significant digits: `1.4`, `700000`, `1e-300`.
 ///
-/// Below 1e9 the integer part is printed in full, because metres from the centre of the Earth have seven
-/// digits.
+/// Below 1e9 the integer part is printed in full, even if it has more digits: distances from the centre of
+/// the Earth in metres have seven.
 #[must_use]
 pub fn short(value: f64) -> String {
     rounded(value, DIGITS)
@@ -55,7 +56,8 @@ fn plural(one: &str) -> String {
     one.strip_suffix('y').map_or_else(|| format!("{one}s"), |stem| format!("{stem}ies"))
 }
 
-/// Formats a number with `digits` significant digits, without trailing zeros.
+/// Formats a number with up to `digits` significant digits, without trailing zeros. From [`SMALL`] to
+/// [`LARGE`] in magnitude, there is no exponent, and the integer part is printed in full.
 fn rounded(value: f64, digits: usize) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();

@@ -40,11 +40,11 @@ class Outcome:
     """``complete``, ``diverged``, or ``failed`` if another error ended the case."""
     error: str | None
     values: dict[str, Any]
-    """Dispersed values."""
+    """Dispersed values, by name."""
     numbers: dict[str, Any]
-    """Numbers of the summary."""
+    """Numbers, truth values and outcomes of the summary, by name."""
     columns: dict[str, NDArray[np.float64]] = field(default_factory=dict)
-    """Kept columns of the trace."""
+    """Columns of the trace that the campaign keeps, by name."""
 
 
 def run_case(plan: Plan, case: int, check_stop: Callable[[], None] = lambda: None) -> Outcome:
@@ -85,7 +85,7 @@ class Stopped(Exception):
 
 
 def summary_of(trace: Any, built: Built | BuiltWorld, status: str) -> dict[str, Any]:
-    """Return the summary of a case; a complete case also has its clearances."""
+    """Return the summary of a case, with its clearances if the case is complete."""
     if isinstance(trace, WorldTrace):
         assert isinstance(built, BuiltWorld)
         summary = summarize_world(trace, built, status=status)
@@ -98,7 +98,7 @@ def summary_of(trace: Any, built: Built | BuiltWorld, status: str) -> dict[str, 
 
 
 def _numbers_before(error: Exception, built: Built | BuiltWorld | None, status: str) -> dict[str, Any]:
-    """Return the numbers of the rows that were recorded before an error."""
+    """Return the numbers of the summary up to an error; empty if no summary can be computed."""
     trace = getattr(error, "trace", None)
     if built is None or trace is None or len(trace) == 0:
         return {}

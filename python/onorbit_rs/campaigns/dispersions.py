@@ -19,7 +19,7 @@ How = Literal["set", "add", "scale"]
 
 @dataclass(frozen=True)
 class Dispersion(ABC):
-    """Base class of dispersed entries.
+    """Base class of the dispersions, each of which changes one entry of the scenario.
 
     ``at`` is the location of the entry in the data of the scenario, and ``names`` are the names of its
     dispersed values in the results.
@@ -61,13 +61,13 @@ def put(data: Any, at: Location, value: Any) -> None:
 
 @dataclass(frozen=True)
 class NumberDispersion(Dispersion):
-    """A number, or one component of a vector."""
+    """Dispersion of a number, or of one component of a vector."""
 
     how: How
     nominal: float
 
     def apply(self, data: dict[str, Any], us: Sequence[float]) -> tuple[Any, ...]:
-        """Change the number."""
+        """Change the number; the dispersed value is the new one."""
         choice = self.distribution.choice
         drawn = self.distribution.value(us[0]) if choice is None else float(self.distribution.pick(us[0]))
         value = changed(self.how, self.nominal, drawn)
@@ -77,10 +77,10 @@ class NumberDispersion(Dispersion):
 
 @dataclass(frozen=True)
 class ChoiceDispersion(Dispersion):
-    """An entry that is replaced by one of several values of any kind."""
+    """Dispersion that replaces an entry by one of several values of any kind."""
 
     def apply(self, data: dict[str, Any], us: Sequence[float]) -> tuple[Any, ...]:
-        """Replace the entry."""
+        """Replace the entry; the dispersed value is the new one."""
         value = self.distribution.pick(us[0])
         put(data, self.at, value)
         return (value,)
@@ -88,10 +88,10 @@ class ChoiceDispersion(Dispersion):
 
 @dataclass(frozen=True)
 class FactorDispersion(Dispersion):
-    """A vector or an inertia that is multiplied by one factor; a vector keeps its direction.
+    """Dispersion that multiplies all components of a vector or an inertia by one factor.
 
-    A positive factor of an inertia keeps the triangle inequality of its principal moments and the principal
-    axes; mass and centre of mass do not change.
+    A positive factor preserves the direction of a vector, and the principal axes of an inertia and the
+    triangle inequality of its principal moments. Mass and centre of mass do not change.
     """
 
     nominal: Any
@@ -106,24 +106,24 @@ class FactorDispersion(Dispersion):
 
 @dataclass(frozen=True)
 class DirectionDispersion(Dispersion):
-    """A vector with a drawn magnitude and a direction that is uniformly distributed on the sphere."""
+    """Dispersion by a vector with a drawn magnitude and a direction uniformly distributed on the sphere."""
 
     how: How
     nominal: tuple[float, ...]
 
     @property
     def draws(self) -> int:
-        """Three: the magnitude, and the height and longitude of the direction."""
+        """Three per case: for the magnitude, and for the height and the longitude of the direction."""
         return 3
 
     @property
     def draw_names(self) -> tuple[str, ...]:
-        """Names of the magnitude, the height and the longitude."""
+        """Names of the random numbers for the magnitude, the height and the longitude."""
         base = self.names[0].removesuffix("[0]")
         return (f"{base}/magnitude", f"{base}/height", f"{base}/longitude")
 
     def apply(self, data: dict[str, Any], us: Sequence[float]) -> tuple[Any, ...]:
-        """Set the vector, or add to it.
+        """Set the vector, or add to it; the dispersed values are the new components.
 
         The height `z = 2 u − 1` of a point that is uniformly distributed on the sphere is uniformly
         distributed (Archimedes).
@@ -140,7 +140,7 @@ class DirectionDispersion(Dispersion):
 
 @dataclass(frozen=True)
 class RotationDispersion(Dispersion):
-    """An attitude that is turned by a rotation vector in body axes."""
+    """Dispersion that turns an attitude by a rotation vector in body axes."""
 
     nominal: tuple[float, ...]
     """Unit quaternion xyzw."""
@@ -148,7 +148,7 @@ class RotationDispersion(Dispersion):
 
     @property
     def draws(self) -> int:
-        """Three: the components of the rotation vector, or angle, height and longitude of its axis."""
+        """Three per case: for the components of the rotation vector, or for its magnitude and direction."""
         return 3
 
     def apply(self, data: dict[str, Any], us: Sequence[float]) -> tuple[Any, ...]:

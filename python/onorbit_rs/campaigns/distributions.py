@@ -15,7 +15,7 @@ from onorbit_rs.scenario.units import split_quantity
 
 _STANDARD = NormalDist()
 LEAST_PROBABILITY = 1e-9
-"""Smallest probability of the interval ``within`` of a normal distribution."""
+"""Smallest accepted probability of the interval ``within`` of a normal distribution."""
 
 
 def _cdf(z: float) -> float:
@@ -44,7 +44,7 @@ def amount(value: Any) -> Amount:
 
 
 Quantity = Annotated[Amount, PlainValidator(amount), PlainSerializer(float)]
-"""Number in SI, or text with a unit of any dimension."""
+"""Number in SI units, or text with a unit of any dimension."""
 
 Pair = Annotated[list[Quantity], Field(min_length=2, max_length=2)]
 
@@ -128,11 +128,11 @@ class Distribution(Part):
         return self.uniform or self.within
 
     def value(self, u: float) -> float:
-        """Return the value whose cumulative probability is ``u``, in SI.
+        """Return the value, in SI units, whose cumulative probability is ``u``.
 
-        `x = a + u (b − a)` for a uniform distribution and `x = µ + σ Φ⁻¹(u)` for a normal one. With bounds
-        `a` and `b`, `u` is first mapped to `Φ(α) + u [Φ(β) − Φ(α)]`, where `α = (a − µ)/σ` and
-        `β = (b − µ)/σ`.
+        It is `x = a + u (b − a)` for a uniform distribution and `x = µ + σ Φ⁻¹(u)` for a normal one. If
+        ``within`` has the bounds `a` and `b`, `u` is first mapped to `Φ(α) + u [Φ(β) − Φ(α)]`, where
+        `α = (a − µ)/σ` and `β = (b − µ)/σ`.
         """
         if self.uniform is not None:
             first, last = map(float, self.uniform)
@@ -148,7 +148,7 @@ class Distribution(Part):
         return min(max(drawn, float(self.within[0])), float(self.within[1]))
 
     def pick(self, u: float) -> Any:
-        """Return the value of ``choice`` for ``u``, in (0, 1)."""
+        """Return the value of ``choice`` that a random number ``u`` in (0, 1) selects."""
         assert self.choice is not None
         return self.choice[min(int(u * len(self.choice)), len(self.choice) - 1)]
 

@@ -150,5 +150,5 @@ class CampaignDocument(Part):
 
     @property
     def lines(self) -> Lines:
-        """Line of every entry of the file."""
+        """Line number of every entry of the file, by the location of the entry."""
         return self._lines

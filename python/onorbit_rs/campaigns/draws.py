@@ -70,7 +70,7 @@ _SOBOL_BITS = 32
 
 
 def _shift(seed: int, path: str) -> int:
-    """Return the digital shift of a coordinate."""
+    """Return the random digital shift, 32 bits, of one coordinate of the Sobol sequence."""
     digest = hashlib.blake2b(f"{seed}/shift/{path}".encode(), digest_size=4).digest()
     return int.from_bytes(digest, "little")
 

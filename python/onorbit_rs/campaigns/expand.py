@@ -85,7 +85,7 @@ class Expander:
         return places
 
     def _check_apart(self, found: list[tuple[Location, str]]) -> None:
-        """Raise an error if two dispersions change the same entry."""
+        """Raise an error if two dispersions change the same entry, or one changes a part of the other's."""
         ordered = sorted(found, key=lambda one: tuple(map(str, one[0])))
         for (outer, first), (inner, second) in pairwise(ordered):
             if inner[: len(outer)] == outer:
@@ -177,7 +177,7 @@ class Expander:
         return RotationDispersion(place.at, names, distribution, quat, change.vector == "direction")
 
     def _numeric(self, path: str, change: Change) -> Distribution:
-        """Return the distribution; check that ``choice`` has numbers and that factors have no unit."""
+        """Return the distribution of a change; check that ``choice`` has numbers and factors have no unit."""
         distribution = change.distribution
         if distribution.choice is not None:
             try:

@@ -19,7 +19,10 @@ if TYPE_CHECKING:
 
 
 def columns_of(trace: Any) -> dict[str, Floats]:
-    """Return the columns of a trace that have a row for every time, as named in ``trace.npz``."""
+    """Return the numeric columns of a trace with one row per recorded time, as named in ``trace.npz``.
+
+    The columns of events are left out.
+    """
     arrays = world_arrays(trace) if isinstance(trace, WorldTrace) else arrays_of(trace)
     rows = len(arrays["time"])
     return {
@@ -30,7 +33,10 @@ def columns_of(trace: Any) -> dict[str, Floats]:
 
 
 def kept_columns(trace: Any, keep: Keep) -> dict[str, Floats]:
-    """Return the kept columns, flat: ``time`` and one column per component, such as ``q[0]``."""
+    """Return ``time`` and one column per component of each kept column, such as ``q[0]``.
+
+    The result is empty if the campaign keeps no columns.
+    """
     if not keep.columns:
         return {}
     arrays = columns_of(trace)

@@ -94,6 +94,6 @@ def _about_origin(body: Body) -> Floats:
 
 
 def _parallel(mass: float, com: Floats) -> Floats:
-    """Return the term of the parallel-axis theorem, `m (c² 1 − c cᵀ)`."""
+    """Return the term (3, 3), kg m², of the parallel-axis theorem, `m (c² 1 − c cᵀ)`."""
     result: Floats = mass * (com @ com * np.eye(3) - np.outer(com, com))
     return result

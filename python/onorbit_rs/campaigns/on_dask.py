@@ -37,7 +37,8 @@ _LOST_S = 15.0
 _RESULT_S = 1.0
 """Wall-clock time for which a result is awaited before the connection is checked, s.
 
-It doubles each time. A large result takes long, but that of a worker that died must be requested again.
+The time doubles with each attempt: a large result takes long to arrive, but the result of a worker that died
+must be requested again.
 """
 _RETRY_S = 0.2
 """Wall-clock time after which a transfer that was cut off is tried again, s."""
@@ -82,7 +83,7 @@ def distributed() -> ModuleType:
 
 @contextmanager
 def on_dask(plan: Plan, cases: Sequence[int], workers: int, address: str) -> Iterator[Iterator[Outcome]]:
-    """Run cases on a Dask cluster during the block; yields an iterator of their outcomes as cases end.
+    """Run cases on a Dask cluster during the block; yield an iterator of outcomes in order of completion.
 
     Parameters
     ----------
@@ -100,7 +101,8 @@ def on_dask(plan: Plan, cases: Sequence[int], workers: int, address: str) -> Ite
     InputError
         If Dask is not installed.
     CampaignError
-        If no cluster answers at the address, it has no workers, or the connection to it is lost.
+        If no cluster answers at the address, it has no workers, its workers cannot run the cases, or the
+        connection to it is lost.
     """
     with _client(address, workers) as client:
         tasks = _Tasks(client, plan, cases, address)
@@ -226,7 +228,7 @@ class _Tasks:
         return list(found)
 
     def _result(self, future: Any) -> Any:
-        """Return the result of a task; Dask runs the task again if its worker died before it was fetched."""
+        """Return the result of a task; Dask reruns the task if its worker died before sending the result."""
         seconds = _RESULT_S
         while True:
             try:

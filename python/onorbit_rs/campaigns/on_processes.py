@@ -93,7 +93,7 @@ def _kill(process: subprocess.Popen[bytes]) -> None:
 
 @contextmanager
 def on_processes(plan: Plan, cases: Sequence[int], workers: int) -> Iterator[Iterator[Outcome]]:
-    """Run cases in processes during the block; yields an iterator of their outcomes as cases end.
+    """Run cases in processes during the block; yield an iterator of outcomes in order of completion.
 
     A worker that dies is replaced, and its unfinished cases are run again.
     """

@@ -36,7 +36,7 @@ class _InThread:
 
 @contextmanager
 def on_threads(plan: Plan, cases: Sequence[int], workers: int) -> Iterator[Iterator[Outcome]]:
-    """Run cases on threads during the block; yields an iterator of their outcomes as cases end."""
+    """Run cases on threads during the block; yield an iterator of outcomes in order of completion."""
     stop = threading.Event()
     with (
         warnings.catch_warnings(),

@@ -56,11 +56,11 @@ class Place:
         return self.owner is not None and self.inside == () and _holds(self.owner, self.key, Attitude)
 
     def inner(self, step: str | int, value: Any) -> Place:
-        """Return the entry of key or index ``step`` in the value of this entry."""
+        """Return the entry at the key or index ``step`` inside this entry; its value is ``value``."""
         return replace(self, at=(*self.at, step), value=value, inside=(*self.inside, step))
 
     def candidate(self, value: Any) -> Any:
-        """Return the plain value of the whole field, in which this entry has another value."""
+        """Return a copy of the plain value of the whole field in which this entry has another value."""
         return _with(self.field_value, self.inside, value)
 
 
@@ -105,7 +105,7 @@ class Places:
 
     @cached_property
     def models(self) -> dict[str, Model]:
-        """Robots by the name of their system; a scenario with one robot has the name ``""``."""
+        """Robots by the name of their system; the robot of a scenario with one robot has the name ``""``."""
         if isinstance(self.scenario, WorldScenario):
             return {name: alone.robot.build(alone) for name, alone in self.scenario.scenarios.items()}
         return {"": self.scenario.robot.build(self.scenario)}
@@ -115,7 +115,10 @@ class Places:
         return list(self._matches(Place((), self.scenario), self._steps(path)))
 
     def _steps(self, path: str) -> list[str]:
-        """Return the keys of a path; a path into the only system of ``systems`` becomes that of one robot."""
+        """Return the keys of a path; if the scenario has only one system, without ``systems.NAME``.
+
+        Control settings of that system are in ``simulation``.
+        """
         steps = _steps(path)
         if isinstance(self.scenario, WorldScenario) or steps[:1] != ["systems"] or len(steps) < 3:
             return steps
@@ -163,7 +166,7 @@ class Places:
         return {}
 
     def _of_part(self, place: Place, part: Part) -> dict[str, Place]:
-        """Return the fields of a part; those of joints and links include all of the robot."""
+        """Return the fields of a part by key; those of joints and links list all of the robot's."""
         plain = part.model_dump(mode="json", by_alias=True)
         found = {}
         for key, name in _names(type(part)).items():
@@ -180,7 +183,7 @@ class Places:
         return found
 
     def _joints(self, initial: InitialState, key: str, at: Location) -> Place:
-        """Return the joint values of an initial state, by the name of the joint."""
+        """Return the entry that contains the values of all joints of an initial state, by joint name."""
         model = self.models[_system(at)]
         default = np.array(model.neutral(), dtype=np.float64)[JOINTS_Q]
         default = default if key == "joints" else np.zeros_like(default)

@@ -52,7 +52,7 @@ class Plan:
         return [name for dispersion in self.dispersions for name in dispersion.names]
 
     def case(self, number: int) -> CaseData:
-        """Return the scenario of a case, which depends only on the campaign and the number of the case."""
+        """Return the scenario and the values of a case, which depend only on the campaign and ``number``."""
         data = copy.deepcopy(self.scenario)
         values: dict[str, Any] = {}
         draws = self._draws(number)
@@ -75,7 +75,7 @@ def plan_of(loaded: LoadedCampaign) -> Plan:
     ScenarioError
         If a path of ``vary`` names no entry, or a change does not fit it.
     InputError
-        If the sampling requires SciPy and it is missing.
+        If the sampling requires SciPy, which is missing, or has fewer dimensions than there are values.
     """
     document, scenario = loaded
     campaign = document.campaign

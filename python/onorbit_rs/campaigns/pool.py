@@ -92,7 +92,7 @@ class Board:
             return is_retried
 
     def report(self, seconds: float) -> None:
-        """Record the wall-clock time of a case."""
+        """Record the wall-clock time of a case, s."""
         with self._lock:
             self._deaths.pop(-1, None)  # a worker has begun a case
             self._mean_s = seconds if self._mean_s is None else 0.9 * self._mean_s + 0.1 * seconds
@@ -102,7 +102,7 @@ class Board:
 def pooled(
     cases: Sequence[int], workers: int, executor: Callable[[], Executor]
 ) -> Iterator[Iterator[Outcome]]:
-    """Run cases on ``workers`` threads during the block; yields an iterator of their outcomes.
+    """Run cases on ``workers`` threads during the block; yield an iterator of their outcomes.
 
     The outcomes are in the order in which the cases end. ``executor`` is called once per thread. After the
     block, no case is in progress.

@@ -11,7 +11,7 @@ from onorbit_rs.common.progress import parts_bar
 
 
 class CampaignProgress:
-    """Counts cases; :meth:`add` is called after every case."""
+    """Counts the cases that have ended, and estimates the time left; call :meth:`add` after every case."""
 
     def __init__(self, cases: int, done: int, show: Callable[[str, float], None]) -> None:
         """Store the number of all cases, the number of cases that were run before, and the display."""

@@ -1,4 +1,4 @@
-"""Columns of a campaign for its report: which results vary, with labels, units and percentiles."""
+"""Selects the columns that the report of a campaign shows, with labels, units and percentiles."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 FIRST = ("case", "status", "success", "error")
 _NOT_RESULTS = ("wall_s", "real_time_factor", "rows", "simulated_s", "time_step_s", *CHECKS)
 _ORDER = ("tracking_", "control_", "events.", "clearance_", "base_", "contacts.", "joint_", "loop_")
-"""Beginnings of the names of results, in the order of the report."""
+"""Prefixes of the names of results, in the order of the report."""
 _SMALLEST_SPREAD = 1e-9
 """Range of a column relative to its largest magnitude below which it counts as constant."""
 

@@ -53,7 +53,8 @@ def campaign(
     source : str, path or mapping
         Name of a bundled campaign, a YAML file, or its content as a mapping.
     out : str or path, optional
-        Folder for ``cases.parquet``, ``campaign.yaml`` and ``report.html``. None writes nothing.
+        Folder for the files of the campaign, such as ``campaign.yaml``, ``cases.parquet`` and
+        ``report.html``. None writes nothing.
     cases : int, optional
         Number of cases; replaces the number in the campaign.
     workers : int, optional
@@ -81,7 +82,8 @@ def campaign(
         (``OutputFolderError``), or if pyarrow, or SciPy or Dask where required, is not installed
         (``InputError``). Errors of single cases are not raised; they are in the column ``error``.
     CampaignError
-        If the cluster does not answer, or the connection to it is lost. The cases on the disk are kept.
+        If the cluster does not answer or cannot run the cases, or the connection to it is lost. The cases on
+        the disk are kept.
     OutputFolderError
         If the disk is full; the cases on the disk are kept, and the same call continues the campaign.
     """
@@ -180,8 +182,8 @@ def campaign_case(
     case : int
         Number of the case, from 0.
     out : str or path, optional
-        Folder for trace, summary, figures and recording; None writes nothing. In the folder of a campaign,
-        the results are in ``case_NUMBER``.
+        Folder for the trace, the summary, the figures and the recording; None writes nothing. If it is the
+        folder of a campaign, the results are written to its subfolder ``case_NUMBER``.
     cases : int, optional
         Number of cases; replaces the number in the campaign. The draws of ``latin_hypercube`` depend on it.
     force : bool
@@ -218,8 +220,9 @@ def campaign_case(
 def write_failures(folder: CampaignFolder, plan: Plan, columns: dict[str, list[Any]], *, quiet: bool) -> None:
     """Write the folder of an ordinary run for every case without success, unless it exists.
 
-    Each of these cases is run again, so that figures and recordings need not be kept in memory. An error of
-    the case is recorded in its folder and not raised.
+    Does nothing unless ``failures`` of ``keep`` is ``full``. Each of these cases is run again, so that
+    figures and recordings need not be kept in memory. An error of the case is recorded in its folder and not
+    raised.
     """
     if plan.keep.failures != "full":
         return
@@ -255,7 +258,7 @@ def _check_cluster(cluster: str | None) -> None:
 def _folder(
     plan: Plan, loaded: LoadedCampaign, out: str | os.PathLike[str] | None, *, force: bool
 ) -> AbstractContextManager[CampaignFolder | None]:
-    """Return the locked folder of the campaign with ``campaign.yaml``; None without ``out``."""
+    """Lock the folder of the campaign and write ``campaign.yaml``; the context is None without ``out``."""
     if out is None:
         return nullcontext()
     folder = CampaignFolder(out, plan.name, digest_of(plan), force=force)
@@ -270,7 +273,7 @@ def _folder(
 def _engine(
     plan: Plan, cases: Sequence[int], workers: int, cluster: str | None
 ) -> AbstractContextManager[Iterator[Outcome]]:
-    """Run cases on the engine that suits the scenario; the context is the iterator of their outcomes."""
+    """Return a context that runs cases on a cluster, in processes or on threads; yields their outcomes."""
     if not cases:
         return nullcontext(iter(()))
     if cluster is not None:

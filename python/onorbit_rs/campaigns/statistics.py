@@ -1,4 +1,4 @@
-"""Statistics of a campaign: success with confidence bounds, percentiles, rank correlations, worst cases."""
+"""Statistics of a campaign: success rate with confidence bounds, and rank correlations."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Success(NamedTuple):
 
 
 def wilson(successes: int, cases: int, confidence: float = CONFIDENCE) -> Success:
-    """Return the fraction of successes with the score interval of its probability.
+    """Return the numbers of successes and cases, with the score interval of the probability of success.
 
     With the fraction `p`, the number of cases `n` and the quantile `z` of the standard normal distribution,
     the bounds are `[p + z²/2n ± z √(p (1 − p)/n + z²/4n²)] / (1 + z²/n)`.
@@ -90,7 +90,7 @@ def significant_correlation(cases: int) -> float:
 
 
 def sensitivities(columns: dict[str, Floats], values: list[str], results: list[str]) -> list[Sensitivity]:
-    """Return the rank correlations of all dispersed values and results, the strongest first."""
+    """Return the rank correlation of every dispersed value with every result, the strongest first."""
     found = []
     for result in results:
         for value in values:

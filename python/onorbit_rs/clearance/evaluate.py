@@ -1,4 +1,4 @@
-"""Distances of watched links in the rows of a trace."""
+"""Computes the distances of watched links in the rows of a trace."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ ROWS_AT_ONCE = 4096
 
 @dataclass(frozen=True)
 class Clearance:
-    """Distance of a watch in every row of a trace.
+    """Distance between the two sides of a watch, or from its zone to its links, in every row of a trace.
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class Clearance:
     normal : (T, 3) array
         Unit vector from the first to the second side, in W.
     pair : (T, 2) array of int
-        Nearest pair, as indices of ``names``.
+        Nearest pair, as an index into each of the two tuples in ``names``.
     names : (tuple of str, tuple of str)
         Names of both sides: links, or the name of the zone.
     """
@@ -84,14 +84,14 @@ class Prepared:
 
     watch: Watch
     side_a: list[Link]
-    """Empty for a keep-out zone."""
+    """Links of the first side; empty for a keep-out zone."""
     side_b: list[Link]
     permitted: list[list[bool]] = field(repr=False)
     """Whether each pair of a link of ``side_a`` and a link of ``side_b`` is compared."""
 
 
 def prepare(models: Models, watch: Watch) -> Prepared:
-    """Return a watch with its links.
+    """Return a watch with the links that its patterns match.
 
     Raises
     ------
@@ -126,7 +126,7 @@ def clearances(models: _core.Model | Models, trace: Any, watches: Sequence[Watch
     models : Model or mapping from str to Model
         Robot of the trace, or the models of all systems by their names.
     trace : Trace or WorldTrace
-        Result of a run, also one that was read from a file.
+        Result of a run, which may have been read from a file.
     watches : sequence of KeepOut and MinimumDistance
         Distances to evaluate, with different names.
 
@@ -150,7 +150,7 @@ def clearances(models: _core.Model | Models, trace: Any, watches: Sequence[Watch
 
 
 def _rows(models: Models, trace: Any) -> tuple[Floats, dict[str, Floats], Any]:
-    """Return common times (T,), configurations by system, and positions and velocities of the orbit."""
+    """Return the common times (T,), the configurations by system, and the states of the orbit, if any."""
     time = np.asarray(trace.time, dtype=np.float64)
     rows: dict[str, Floats] = {}
     orbit = None

@@ -24,8 +24,8 @@ class Violation:
     links : (str, str)
         Deepest pair; the first entry is the name of the zone for a keep-out zone.
     entry, exit : float or None
-        Times between which they overlap, s, interpolated linearly between rows; None if they overlap in the
-        first or in the last row.
+        Start and end of the interval, s, interpolated linearly between rows; None for a start before the
+        first row or an end after the last row.
     depth : float
         Largest depth in a row, m.
     time : float

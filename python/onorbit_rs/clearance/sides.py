@@ -1,4 +1,4 @@
-"""Links that patterns match, and the poses of their shapes."""
+"""Finds the links that patterns match, and computes the poses of their shapes."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 Models = Mapping[str, "Model"]
-"""Models by the names of their systems; one robot has the name ``""``."""
+"""Model of each system, by the name of the system; the name of a single robot is ``""``."""
 
 
 @dataclass(frozen=True)

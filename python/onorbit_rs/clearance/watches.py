@@ -1,4 +1,4 @@
-"""Declarations of distances to watch."""
+"""Declarations of the distances to evaluate: keep-out zones and minimum distances."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The application, its commands, and the entry point."""
+"""Defines the application ``onorbit``, its commands, and its entry point."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def onorbit(context: typer.Context, version: VersionOption = False) -> None:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Run a command; an error prints one line and exits with code 2 (Ctrl-C 130, SIGTERM 143, SIGHUP 129)."""
+    """Run a command and exit; errors are printed and give code 2 (Ctrl-C 130, SIGTERM 143, SIGHUP 129)."""
     escape_unencodable()
     try:
         with ending_signals(), warnings.catch_warnings(), _announcing_user_code():

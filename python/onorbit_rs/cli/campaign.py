@@ -80,7 +80,7 @@ def campaign(
 
 
 def _overview(table: pa.Table) -> dict[str, Any]:
-    """Return the number of cases by status, and the successes with their confidence bounds."""
+    """Return the numbers of cases by status, the success rate with bounds, and the cases without success."""
     from onorbit_rs.campaigns.statistics import CONFIDENCE, wilson
 
     status, is_success = table["status"].to_pylist(), table["success"].to_pylist()

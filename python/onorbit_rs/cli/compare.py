@@ -79,7 +79,7 @@ def compare(
 def _figures(
     compared: Comparison | WorldComparison, out: Path, *, force: bool
 ) -> list[tuple[Path, Comparison]]:
-    """Return the file and content of each figure; a world has one per system, named after the system."""
+    """Return the file and the comparison of each figure; a world has one per system, named after it."""
     from onorbit_rs.tools.comparison import Comparison
 
     if isinstance(compared, Comparison):

@@ -7,14 +7,14 @@ from pathlib import Path
 
 
 def scenario_names(incomplete: str) -> list[str]:
-    """Return the bundled scenarios and the YAML files whose names begin with ``incomplete``."""
+    """Return the bundled scenarios, YAML files and folders whose names begin with ``incomplete``."""
     from onorbit_rs import scenarios
 
     return [*_fitting(scenarios.names(), incomplete), *_files(incomplete, (".yaml", ".yml"))]
 
 
 def campaign_names(incomplete: str) -> list[str]:
-    """Return the bundled campaigns and the YAML files whose names begin with ``incomplete``."""
+    """Return the bundled campaigns, YAML files and folders whose names begin with ``incomplete``."""
     from onorbit_rs.campaigns.bundled import CAMPAIGNS
 
     return [*_fitting(CAMPAIGNS.names(), incomplete), *_files(incomplete, (".yaml", ".yml"))]
@@ -29,14 +29,14 @@ def bundled_names(incomplete: str) -> list[str]:
 
 
 def robot_names(incomplete: str) -> list[str]:
-    """Return the bundled robots and the URDF and xacro files whose names begin with ``incomplete``."""
+    """Return the bundled robots, URDF and xacro files, and folders whose names begin with ``incomplete``."""
     from onorbit_rs import robots
 
     return [*_fitting(robots.names(), incomplete), *_files(incomplete, (".urdf", ".xacro"))]
 
 
 def robot_and_scenario_names(incomplete: str) -> list[str]:
-    """Return the bundled names, and robot and scenario files, whose names begin with ``incomplete``."""
+    """Return the robots and scenarios, bundled or in files, and folders that begin with ``incomplete``."""
     return list(dict.fromkeys([*robot_names(incomplete), *scenario_names(incomplete)]))
 
 

@@ -21,7 +21,7 @@ _DEEPEST = 12
 
 
 def print_info(model: Model, console: Console) -> None:
-    """Print the tree, tables of bodies and joints, and the warnings."""
+    """Print the description of a robot: mass, tree, tables of bodies and joints, loops and warnings."""
     about = describe(model)
     counts = f"{count(len(model.bodies), 'body', 'bodies')}, {count(len(model.joints), 'joint', 'joints')}"
     console.print(f"[bold]{text(model.name)}[/bold]: {counts}, {count(len(model.frames), 'frame', 'frames')}")

@@ -131,7 +131,7 @@ def _print_contacts(console: Console, contacts: Sequence[dict[str, Any]]) -> Non
 
 
 def _print_latches(console: Console, latches: Sequence[dict[str, Any]]) -> None:
-    """Print a table of the results of the latches, with the last separation before each capture."""
+    """Print a table of the latches: result, nearest approach, and last separation before the capture."""
     if not latches:
         return
     table = new_table("latch", "result", "nearest", "at", "parted", "relative speed", "spin")
@@ -190,7 +190,7 @@ def _verdict(summary: dict[str, Any]) -> str:
 
 
 def _certificate(lines: list[Check]) -> Table:
-    """Return a table of the values and their gates."""
+    """Return a table of the checks of a certificate, with their values, gates and outcomes."""
     table = new_table("", "value", "gate", "unit", "")
     for check in lines:
         value = "not finite" if check.holds is False and check.value is None else _short(check.value)

@@ -13,7 +13,7 @@ Row = tuple[str, str, str, str, bool | None]
 
 _WORDS = {True: "[green]pass[/green]", False: "[red]FAIL[/red]", None: "[yellow]skipped[/yellow]"}
 _GAPS = 2 + 6 * 2
-"""Total width of the gaps between columns and of the indent."""
+"""Total width of the gaps between columns and of the indent, characters."""
 
 
 def print_cases(cases: Sequence[Case]) -> None:

@@ -53,7 +53,7 @@ def describe_world(scenario: WorldScenario, models: Mapping[str, Model]) -> dict
 
 
 def _trees(stage: Stage, models: Mapping[str, Model]) -> list[dict[str, Any]]:
-    """Return the trees of a stage as data; ``joints`` counts joints, including those of seatings."""
+    """Return the trees of a stage as data; ``joints`` is the number of joints, with those of seatings."""
     seatings = stage.seating_joints or (0,) * len(stage.trees)
     return [
         {

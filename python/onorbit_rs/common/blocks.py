@@ -31,7 +31,8 @@ def blocks(*columns: Any) -> Iterator[tuple[Floats, ...]]:
 def largest(function: Callable[..., Floats], *columns: Any) -> Any:
     """Return the largest value of ``function``, which maps rows to one value or several values per row.
 
-    For several values per row, (T, n), the result has the largest of each, (n,). NaN counts as largest.
+    For several values per row, (T, n), the result is the largest value of each column, (n,). NaN counts as
+    largest.
     """
     return np.max([np.max(function(*rows), axis=0) for rows in blocks(*columns)], axis=0)
 

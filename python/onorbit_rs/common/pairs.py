@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from itertools import combinations
 
 MOST_PAIRS = 6
-"""Largest number of pairs that are all shown; if there are more, only pairs with the first system are."""
+"""Number of pairs up to which all are shown; of more pairs, only those with the first system are shown."""
 
 
 def pairs_of(names: Sequence[str]) -> list[tuple[str, str]]:

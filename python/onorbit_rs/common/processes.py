@@ -11,7 +11,7 @@ from typing import IO, Any
 
 
 def packed(message: object) -> bytes:
-    """Return an object as bytes."""
+    """Return the pickle of an object."""
     return pickle.dumps(message, protocol=pickle.HIGHEST_PROTOCOL)
 
 

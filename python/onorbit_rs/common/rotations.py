@@ -55,7 +55,7 @@ def _times_four_components(r: Floats, largest: int) -> Floats:
 
 
 def product(p: ArrayLike, q: ArrayLike) -> Floats:
-    """Return the quaternions (..., 4), xyzw, of `rot_p rot_q`: first `q`, then `p`, about fixed axes."""
+    """Return the quaternions (..., 4), xyzw, of rotations by `q` and then by `p`: `rot_p rot_q`."""
     px, py, pz, pw = np.moveaxis(np.asarray(p, dtype=np.float64), -1, 0)
     qx, qy, qz, qw = np.moveaxis(np.asarray(q, dtype=np.float64), -1, 0)
     return np.stack(

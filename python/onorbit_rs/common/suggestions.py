@@ -17,7 +17,10 @@ def nearest(name: str, known: Iterable[str]) -> str | None:
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """Return ``"; did you mean 'tool'?"``; without a similar name, up to 12 known names, or ``""``."""
+    """Return a suggestion such as ``"; did you mean 'tool'?"`` for a misspelt name.
+
+    If no name is similar, the known names are listed, or, if there are more than 12, the result is empty.
+    """
     known = list(known)
     suggestion = nearest(name, known)
     if suggestion is not None:

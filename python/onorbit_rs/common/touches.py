@@ -1,4 +1,4 @@
-"""Touches of contacts, from the touch-downs and lift-offs among the events of a run."""
+"""Intervals in which contacts touch, from the touch-downs and lift-offs among the events of a run."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ class TimedEvent(Protocol):
 
     @property
     def name(self) -> str:
-        """Name of the event, for a touch-down or a lift-off that of the contact."""
+        """Name of the event; for a touch-down or a lift-off, the name of the contact."""
 
     @property
     def kind(self) -> str:
@@ -27,7 +27,7 @@ Touch = tuple[float, float]
 
 
 def touches_of(events: Iterable[TimedEvent], end_s: float) -> dict[str, list[Touch]]:
-    """Return start and end, s, of each contact's touches in order; ``end_s`` if there is no lift-off."""
+    """Return the start and end, s, of each contact's touches, which end at ``end_s`` without a lift-off."""
     found: dict[str, list[Touch]] = {}
     for event in events:
         if event.kind == "touch_down":

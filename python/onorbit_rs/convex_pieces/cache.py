@@ -1,6 +1,6 @@
 """Cache of convex pieces on disk, one file per mesh and options.
 
-A file holds its checksum and the rows of an array, so that a damaged file is recognised and computed again.
+A file holds an array and its checksum, so that damage is detected and the pieces are computed again.
 Files are replaced atomically, so two processes can write the same file. Without write access, nothing is
 cached.
 """

@@ -19,10 +19,10 @@ NEAR = 2e-3
 
 
 def fitted(pieces: list[Floats], vertices: Floats, triangles: NDArray[np.int32]) -> list[Floats]:
-    """Return the pieces with those corners moved onto the mesh that are closer to it than :data:`NEAR`.
+    """Return the pieces after moving corners that are closer to the mesh than :data:`NEAR` onto it.
 
-    A corner is moved to the nearest vertex, without a near vertex to the nearest edge, and otherwise to the
-    nearest face.
+    A corner is moved to the nearest vertex or, if no vertex is that close, to the nearest edge, and otherwise
+    to the nearest face.
     """
     near = NEAR * float(np.linalg.norm(np.ptp(vertices, axis=0)))
     corners = vertices[triangles]  # (t, 3, 3)

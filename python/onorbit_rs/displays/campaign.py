@@ -40,9 +40,9 @@ def described(table: pa.Table, name: str, values: list[str], success: dict[str, 
 
 
 def campaign_html(table: pa.Table) -> str | None:
-    """Return success with its bounds, the results that vary, and the cases without success as HTML.
+    """Return the success rate with bounds, the results that vary, and the cases without success as HTML.
 
-    Returns None for a table that is not, or no longer, that of a campaign.
+    Returns None for a table without the metadata or the columns of a campaign.
     """
     about = json.loads((table.schema.metadata or {}).get(_KEY, b"null"))
     if about is None or not {"case", "status", "success", "error"} <= set(table.column_names):

@@ -45,7 +45,7 @@ def _short(value: Any) -> str:
 
 
 def _sizes(shown: Any) -> str:
-    """Return the attributes that are numbers, texts or arrays, the latter as shapes: ``: inertia (6, 6)``."""
+    """Return the attributes that are numbers, texts or arrays as text, such as ``: inertia (6, 6)``."""
     found = []
     for name in dir(type(shown)):
         try:

@@ -60,7 +60,7 @@ def show(
 
 
 def recording_of(source: Run | RecordedRun | str | os.PathLike[str]) -> bytes:
-    """Return the recording of a run, which is written if the run has no folder with one.
+    """Return the content of a run's recording file; for a ``Run`` without one, compute the recording.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""HTML of a world and of a simulation for notebooks: systems, what acts on them, settings."""
+"""HTML of a world and of a simulation for notebooks: systems, orbit, effects, events and settings."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _MOST = 20
 
 
 def world_html(world: World) -> str:
-    """Return systems with masses, kg, joints and controls, orbit, effects, contacts and events as HTML."""
+    """Return the systems, the orbit, the effects, the contacts and the events of a world as HTML."""
     (systems,), settings = arguments_of(world)
     rows = []
     for system in systems[:_MOST]:
@@ -38,7 +38,7 @@ def world_html(world: World) -> str:
 
 
 def simulation_html(simulation: Simulation) -> str:
-    """Return the systems with masses, kg, and joints, the orbit, integrator and time step, s, as HTML."""
+    """Return the systems, the orbit, the integrator and the time steps of a simulation as HTML."""
     models: Mapping[str, Model] = simulation.models
     table = rows_html([_robot(name, model) for name, model in list(models.items())[:_MOST]], _ROBOT)
     step, every = simulation.time_step, simulation.record_every
@@ -60,7 +60,7 @@ def _robot(name: str, model: Model) -> tuple[str, str, str, str]:
 
 
 def _controls(controller: Any) -> Iterable[str]:
-    """Return the names and the laws of the controls of a system."""
+    """Yield the law of each control of a system, after the name of the control if it has one."""
     for control in controller if isinstance(controller, list | tuple) else [controller]:
         if control is None:
             continue
@@ -72,7 +72,7 @@ def _controls(controller: Any) -> Iterable[str]:
 
 
 def _contact(contact: Any) -> str:
-    """Return the links of a contact and its law."""
+    """Return a contact as text, with the class of its normal-force law and whether it has friction."""
     _, given = arguments_of(contact)
     law = type(given["normal"]).__name__
     friction = "" if given.get("friction") is None else " with friction"

@@ -132,7 +132,7 @@ class Mujoco:
 
     @property
     def loops(self) -> list[str]:
-        """Names of the represented closed loops and mimic joints; in a world ``SYSTEM/NAME``."""
+        """Names of the represented closed loops and mimic joints; in a world, paths ``SYSTEM/NAME``."""
         return loop_names(self._models)
 
     def step(
@@ -151,7 +151,7 @@ class Mujoco:
         Parameters
         ----------
         start, end : float
-            Time at the ends of the step, s.
+            Times of the start and the end of the step, s.
         q : (nq,) array
             Base position in m, base quaternion xyzw, joints in rad or m.
         v : (nv,) array
@@ -205,7 +205,7 @@ class Mujoco:
         Parameters
         ----------
         start, end : float
-            Time at the ends of the step, s.
+            Times of the start and the end of the step, s.
         q, v, tau : arrays
             Configurations, velocities and joint torques of the systems, one after another, units of
             :meth:`step`.
@@ -358,7 +358,7 @@ class Mujoco:
         return np.concatenate([qvel, data.qacc, force.sum(axis=0), moment.sum(axis=0), [power, loss]])
 
     def _to_mujoco(self, q: Floats, v: Floats) -> tuple[Floats, Floats]:
-        """Return MuJoCo's ``[p, quat wxyz, joints]`` and ``[ṗ in W, w in B, rates]``."""
+        """Return MuJoCo's configuration ``[p, quat wxyz, joints]`` and velocity ``[ṗ_W, w_B, rates]``."""
         qpos, qvel = np.empty_like(q), np.empty_like(v)
         qpos[self._q_columns], qvel[self._v_columns] = q, v
         for part in self._shares:

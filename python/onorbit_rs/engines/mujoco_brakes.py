@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def add_locks(mujoco: ModuleType, spec: Any, joints: Iterable[str], time_step: float) -> None:
-    """Add an inactive equality for each joint, which holds it at a position."""
+    """Add an inactive equality for each joint, which, when it is active, holds the joint at a position."""
     for name in joints:
         lock = spec.add_equality()
         lock.type, lock.objtype = mujoco.mjtEq.mjEQ_JOINT, mujoco.mjtObj.mjOBJ_JOINT

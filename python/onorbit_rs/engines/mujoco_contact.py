@@ -130,7 +130,7 @@ def _check(contact: Contact) -> None:
 def _pieces(
     bodies: Mapping[str, tuple[Model, Mapping[str, Any]]], contact: str, links: Sequence[str]
 ) -> list[tuple[str, int]]:
-    """Return system and index of every collision shape of the links that match the patterns, once each."""
+    """Return the system and the index of every collision shape of the links that match the patterns."""
     patterns = [link_pattern(link) for link in links]
     found = [
         (system, index)
@@ -202,7 +202,7 @@ def _set_shape(mujoco: ModuleType, spec: Any, geom: Any, shape: Visual) -> None:
 
 
 def _add_pair(spec: Any, a: str, b: str, friction: Friction | None, time_step: float) -> None:
-    """Permit two geoms to touch."""
+    """Permit two geoms to touch, with the friction of their contact."""
     pair = spec.add_pair()
     pair.geomname1, pair.geomname2 = a, b
     pair.condim = 1 if friction is None else 3

@@ -27,7 +27,7 @@ DAMPING_RATIO = 10.0
 
 
 def import_mujoco() -> ModuleType:
-    """Return the package ``mujoco``.
+    """Import and return the package ``mujoco``.
 
     Raises
     ------

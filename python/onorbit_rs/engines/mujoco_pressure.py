@@ -44,7 +44,7 @@ class _Rows:
     row: Indices
     """Index of the normal row among MuJoCo's constraints."""
     force: Floats
-    """Normal force by the law, N."""
+    """Normal force that the law of the contact prescribes, N."""
 
 
 class Contacts:
@@ -78,7 +78,7 @@ class Contacts:
         self._held = [{int(a), int(b)} for a, b in zip(*ends, strict=True)]
 
     def forward(self, data: Any) -> None:
-        """Compute the accelerations; the counterpart of ``mj_forward``."""
+        """Compute the accelerations with the declared normal forces; replaces ``mj_forward``."""
         mujoco, model = self._mujoco, self._model
         mujoco.mj_fwdPosition(model, data)
         mujoco.mj_fwdVelocity(model, data)
@@ -158,12 +158,12 @@ class Contacts:
         return bool(self._held) and {int(self._model.geom_bodyid[geom]) for geom in pair} in self._held
 
     def output(self, data: Any) -> Floats:
-        """Return force, moment about the origin of W, and power removed from the motion, of each contact.
+        """Return the force, moment about the origin of W, and power removed from the motion, by contact.
 
         Returns
         -------
         (contacts, 7) array
-            On the second side, axes of W; N, N m and W.
+            Values on the second side, in axes of W; N, N m and W.
         """
         found = np.zeros((len(self._touches), WIDTH))
         rows = self._rows(data)

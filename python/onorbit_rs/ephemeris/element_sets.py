@@ -1,4 +1,4 @@
-"""Selects the element set of one satellite from a file with several."""
+"""Selects the element set of one satellite from a file with several sets."""
 
 from __future__ import annotations
 

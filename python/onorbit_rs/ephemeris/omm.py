@@ -1,4 +1,4 @@
-"""Reads CCSDS Orbit Mean-Elements Messages: JSON and KVN, and XML and CSV with PyPI's ``sgp4``."""
+"""Reads CCSDS Orbit Mean-Elements Messages in JSON and KVN and, with PyPI's ``sgp4``, in XML and CSV."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ _CONSTANTS = ("radiusearthkm", "mu", "xke", "j2", "j3", "j4")
 
 
 def of_lines(line1: str, line2: str, gravity: str) -> Satrec:
-    """Return the ``Satrec`` of two lines, read by ``sgp4``."""
+    """Return the ``Satrec`` of the two lines of a TLE, read by ``sgp4``."""
     return Satrec.twoline2rv(line1, line2, MODELS[gravity])
 
 

@@ -24,7 +24,10 @@ SOLAR_SYSTEM = 0
 _DOWNLOAD = "download it again, or give another kernel, such as de440s.bsp"
 
 Segment = tuple[float, float, float, "NDArray[np.float64]"]
-"""Sign, start (s of TDB from J2000.0), interval (s), Chebyshev coefficients (3, intervals, count), km."""
+"""Series of positions: sign, start (s of TDB from J2000.0), interval (s), and Chebyshev coefficients, km.
+
+The coefficients have the shape (3, intervals, count).
+"""
 
 
 def segments(path: str | Path) -> tuple[list[Segment], list[Segment]]:
@@ -61,7 +64,7 @@ def segments(path: str | Path) -> tuple[list[Segment], list[Segment]]:
 
 
 def _check_records(path: str | Path) -> None:
-    """Raise ValueError if a file has no positions, or a cycle of records, in which jplephem would not end."""
+    """Raise ValueError if a file has no positions, or if jplephem would follow a cycle of records forever."""
     from jplephem.daf import DAF
 
     with Path(path).open("rb") as stream:

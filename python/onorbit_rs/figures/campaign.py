@@ -50,7 +50,7 @@ class Series(NamedTuple):
         return f"{name} [{self.unit}]" if self.unit else name
 
     def with_prefix(self) -> Series:
-        """Return the series in a unit with an SI prefix, so that the axis needs no power of ten."""
+        """Return the series with an SI prefix if its unit accepts one, so that no power of ten is needed."""
         if not self.unit or self.unit in ("deg", "%") or OR in self.unit:
             return self
         factor, unit = with_prefix(float(np.nanmax(np.abs(self.values))), self.unit)

@@ -1,4 +1,4 @@
-"""Motion of a captured frame relative to the capturing one."""
+"""Figure of the motion of a captured frame relative to the capturing frame."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ MOST_ABOVE = 3.0
 def captured_motion(
     trace: WorldTrace, models: Mapping[str, Model], connection: Connection, events: Sequence[EventMark] = ()
 ) -> Figure:
-    """Draw the motion of a captured frame in axes of the capturing one, over the whole run.
+    """Draw the motion of a captured frame in axes of the capturing frame, over the whole run.
 
     The panels show position, attitude (as a rotation vector), velocity and angular velocity: the quantities
     that a latch compares with its limits. Black lines are magnitudes; dashed lines are the limits of the
@@ -73,7 +73,10 @@ def captured_motion(
 
 
 def _limits(connection: Connection) -> list[float | None]:
-    """Return the limits of a latch: distance, m, angle, deg, speed, m/s, and angular rate, deg/s; or None."""
+    """Return the limits of a latch: distance, m, angle, deg, speed, m/s, and angular rate, deg/s.
+
+    A limit that the latch does not have is None.
+    """
     latch = connection.latch
     limits = [] if latch is None else [*latch.within, *(latch.slower_than or ())]
     found: list[float | None] = [*limits, *[None] * (4 - len(limits))]

@@ -44,7 +44,7 @@ SUM = "sum"
 
 
 def contact_energy(trace: WorldTrace, systems: Sequence[str], events: Sequence[EventMark] = ()) -> Figure:
-    """Draw kinetic, elastic and dissipated energy of a group of systems, their work, and the constant sum.
+    """Draw the energies of a group of systems, the work of motors and environment, and the constant sum.
 
     If the touch with the largest elastic energy is short, a second panel shows the changes since the touch
     began.
@@ -126,7 +126,7 @@ def _contacts(trace: WorldTrace, systems: Sequence[str]) -> dict[str, str]:
 def _largest_touch(
     time: Floats, elastic: Floats, events: Sequence[EventMark], contacts: Sequence[str]
 ) -> tuple[float, float] | None:
-    """Return begin and end, s, of the touch during which the elastic energy is largest; None without one."""
+    """Return start and end, s, of the touch during which the elastic energy is largest; None without one."""
     at = float(time[np.argmax(elastic)])
     found = touches_of(events, float(time[-1]))
     within = (touch for name in contacts for touch in found.get(name, ()) if touch[0] <= at <= touch[1])

@@ -1,4 +1,4 @@
-"""Gap, force, sliding speed and energies of a contact."""
+"""Figure of the gap, the forces, the sliding speed and the energies of a contact."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Touches and smallest distances of all contacts over the whole run."""
+"""Figure of the touches and the smallest distances of all contacts over the whole run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Differences between two runs."""
+"""Figure of the differences between two runs."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ _LEAST_APART = 0.12
 def mark_events(
     axes: Axes, events: Sequence[EventMark], time_scale: float, *, has_names: bool = False
 ) -> None:
-    """Draw a vertical line for each event: solid for a capture, dashed for a release.
+    """Draw a vertical line for each event: solid for a capture, dashed for a release, dotted for others.
 
     Events of contacts are not drawn. ``time_scale`` is the number of seconds in the unit of the time axis.
     """
@@ -54,6 +54,6 @@ def _joined(events: Sequence[EventMark]) -> list[tuple[float, str]]:
 
 
 def of_systems(events: Sequence[EventMark], systems: Sequence[str]) -> list[EventMark]:
-    """Return the captures and releases between these systems."""
+    """Return the events that involve only these systems, except touch-downs and lift-offs of contacts."""
     return [event for event in events
             if event.kind not in OF_CONTACT and set(event.systems) <= set(systems)]  # fmt: skip

@@ -1,4 +1,4 @@
-"""Forces and torques of the environment on each body."""
+"""Figure of the forces and torques of the environment on each body."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Ground track of a run on the Earth."""
+"""Figure of the ground track of a run on the Earth."""
 
 from __future__ import annotations
 

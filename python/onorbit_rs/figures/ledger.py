@@ -1,4 +1,4 @@
-"""Balance of momentum and energy, and the part of their change that impulse and work do not explain."""
+"""Figure of momentum and energy, and of the part of their change that impulse and work do not explain."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _INTERVALS = 300
 
 
 def ledger(trace: Trace) -> Figure:
-    """Draw momentum, energy and work on the left; on the right, the balances that should remain zero.
+    """Draw momentum, energy and work on the left, and the drift of their balances on the right.
 
     In W, `P - ∫ΣF dt`, `L_com - ∫ΣT dt` and `K - W` are constant: linear momentum and angular momentum about
     the centre of mass less the impulses of the external forces and torques, and kinetic energy less work. The

@@ -1,4 +1,4 @@
-"""Force, moment and opening of a closed loop."""
+"""Figure of the force, the moment and the opening of a closed loop."""
 
 from __future__ import annotations
 

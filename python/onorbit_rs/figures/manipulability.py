@@ -1,4 +1,4 @@
-"""Manipulability of the tool along its path, with a free and with a fixed base."""
+"""Figure of the manipulability of the tool along its path, with a free and with a fixed base."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Motion of the free base: position and attitude, and its reaction to the arm."""
+"""Figures of the motion of the free base: its position and attitude, and its reaction to the arm."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The orbit around the planet, and the attitude of the base relative to the local orbital frame."""
+"""Figure of the orbit around the planet, and of the attitude of the base in the local orbital frame."""
 
 from __future__ import annotations
 

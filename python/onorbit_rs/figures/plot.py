@@ -183,7 +183,7 @@ def _fits(name: str, column: str, anywhere: bool = False) -> bool:
 
 
 def _heads(name: str) -> list[str]:
-    """Return ``["q", "q/position", "q/position/x"]`` for ``q/position/x``."""
+    """Return the leading parts of a name: ``["q", "q/position", "q/position/x"]`` for ``q/position/x``."""
     parts = name.split("/")
     return ["/".join(parts[: count + 1]) for count in range(len(parts))]
 
@@ -199,7 +199,7 @@ def _short(name: str, head: str) -> str:
 
 
 def _draw(axes: Any, panel: Sequence[Line], names: Sequence[str], scale: float) -> None:
-    """Draw the lines of a panel; systems of a world may have recorded rows at different times."""
+    """Draw the lines of a panel, which may have different times if they belong to different systems."""
     time = panel[0].time
     if all(np.array_equal(line.time, time) for line in panel):
         plot_largest(axes, time / scale, np.column_stack([line.values for line in panel]), names)

@@ -1,4 +1,4 @@
-"""Motion of base and targets relative to the reference orbit."""
+"""Figure of the motion of the base and of targets relative to the reference orbit."""
 
 from __future__ import annotations
 
@@ -99,7 +99,8 @@ def goes_far(trace: Trace, model: Model) -> bool:
 def set_window(axes: Axes, points: Floats, across: int) -> None:
     """Set the limits of a panel around the points (k, 3) in L.
 
-    The track is to the right, entry ``across`` upward; the scale is the same in both panels.
+    The along-track axis points to the right, and the axis with index ``across`` points upward. The scale is
+    the same in both panels.
     """
     low, high = points.min(axis=0), points.max(axis=0)
     sides = high - low

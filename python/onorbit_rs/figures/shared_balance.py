@@ -1,4 +1,4 @@
-"""Momentum and energy that systems exchange in captures and releases."""
+"""Figures of the momentum and the energy that systems exchange in captures and releases."""
 
 from __future__ import annotations
 

@@ -137,7 +137,7 @@ def clock(trace: Trace) -> tuple[Floats, str]:
 
 
 def time_unit(time: Floats) -> tuple[float, str]:
-    """Return the number of seconds per unit, and the name of the unit, that suits these times, s."""
+    """Return the number of seconds in a unit that suits these times, s, and the name of the unit."""
     span = float(time[-1] - time[0])
     return next(((scale, unit) for least, scale, unit in _CLOCK if span >= least), (1.0, "s"))
 
@@ -193,9 +193,9 @@ def others_of(count: int) -> str:
 
 
 def thin(time: Floats, values: Floats) -> tuple[Floats, Floats]:
-    """Return the end points of a line and at most :data:`MOST_POINTS` extremes, from equal intervals.
+    """Return the end points of a line, and the minimum and the maximum of each of many equal intervals.
 
-    A line with fewer points is returned whole.
+    These are at most :data:`MOST_POINTS` points between the ends. A line with fewer points is returned whole.
     """
     if len(time) <= MOST_POINTS:
         return time, values

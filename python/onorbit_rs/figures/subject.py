@@ -29,7 +29,7 @@ class Tool(NamedTuple):
 
 @dataclass(frozen=True)
 class Subject:
-    """A run to draw.
+    """Run whose figures are drawn, with the data that the figures need.
 
     Attributes
     ----------
@@ -92,7 +92,7 @@ def subject_of(
 
 
 def _is_the_papers(scenario: Scenario) -> bool:
-    """Return True if the scenario equals the paper's except for texts, epoch and simulation settings."""
+    """Return True if the scenario equals that of the paper except for texts, epoch and run settings."""
     ignored = ("name", "description", "epoch", "simulation")
     given, bundled = (
         {key: value for key, value in one.resolved(Path()).items() if key not in ignored}

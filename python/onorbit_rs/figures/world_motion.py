@@ -1,4 +1,4 @@
-"""Paths of several systems relative to the reference orbit, and the distances between them."""
+"""Figure of the paths of several systems relative to the reference orbit, and of their distances."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ class EventMark(NamedTuple):
 
 @dataclass(frozen=True)
 class WorldSubject:
-    """A run of several systems to draw.
+    """Run of several systems whose figures are drawn, with the data that the figures need.
 
     Attributes
     ----------
@@ -32,7 +32,7 @@ class WorldSubject:
     models : dict of Model
         Robots by system, except those whose file cannot be read or has changed since the run.
     events : tuple of EventMark
-        Events that happened; figures mark the captures and releases.
+        Events that happened; figures mark all but touch-downs and lift-offs, which they draw as touches.
     connections : tuple of Connection
         Pairs of frames that captures connect.
     touching : tuple of tuple of str

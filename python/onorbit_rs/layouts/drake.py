@@ -1,4 +1,4 @@
-"""Drake: scalar-first quaternion before the position, angular before linear velocity, both in world axes."""
+"""Layout of Drake: scalar-first quaternion, then position; angular, then linear velocity, in world axes."""
 
 from __future__ import annotations
 

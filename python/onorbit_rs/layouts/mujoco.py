@@ -1,4 +1,4 @@
-"""MuJoCo: scalar-first quaternion; linear velocity of the base in world axes, angular in body axes."""
+"""Layout of MuJoCo: scalar-first quaternion; base velocity linear in world axes, angular in body axes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Pinocchio: siblings sorted by name, unbounded joints as cosine and sine; otherwise as in onorbit_rs."""
+"""Layout of Pinocchio: that of onorbit_rs, but siblings are sorted, and unbounded joints are cosine and sine.
+
+Siblings are joints with the same parent; Pinocchio sorts them by name.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +34,7 @@ if TYPE_CHECKING:
 def to_pinocchio(
     model: Model, q: ArrayLike, v: ArrayLike, joints: Any = None, *, unbounded: Sequence[str] = ()
 ) -> tuple[Floats, Floats]:
-    """Return Pinocchio's `q` and `v`.
+    """Return Pinocchio's `q` and `v` from those of onorbit_rs.
 
     Parameters
     ----------

@@ -40,7 +40,7 @@ class QuaternionLayout(NamedTuple):
     is_angular_in_world: bool = False
 
     def from_model(self, state: tuple[Floats, Floats], order: NDArray[Any]) -> tuple[Floats, Floats]:
-        """Return configuration and velocity of the other engine from those of onorbit_rs."""
+        """Return the configuration and the velocity of the other engine from those of onorbit_rs."""
         q_model, v_model = state
         q_other, v_other = np.empty(q_model.shape), np.empty(v_model.shape)
         quat, angular = q_model[..., QUATERNION], v_model[..., ANGULAR]

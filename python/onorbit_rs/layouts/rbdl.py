@@ -1,4 +1,4 @@
-"""RBDL: three translations and a spherical joint for the base; the quaternion's scalar is at the end."""
+"""Layout of RBDL: the base has three translations and a spherical joint; the quaternion's scalar is last."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def from_rbdl(
     q : (nq,) or (B, nq) array
         Configuration ``[p, quat_xyz, joints, quat_w]`` of RBDL.
     v : (nv,) or (B, nv) array
-        ``QDot``.
+        Velocity ``QDot = [v_W, w_B, rates]`` of RBDL.
     joints : sequence of str, optional
         Names in RBDL's order.
 

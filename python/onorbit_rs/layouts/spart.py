@@ -1,4 +1,4 @@
-"""SPART: rotation matrix of the base and position of its centre of mass."""
+"""Layout of SPART: rotation matrix of the base, and position of the base's centre of mass."""
 
 from __future__ import annotations
 

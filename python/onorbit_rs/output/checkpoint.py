@@ -141,7 +141,7 @@ class CheckpointWriter:
             raise
 
     def _write_state(self, checkpoint: Checkpoint, columns: dict[str, Any]) -> None:
-        """Replace the state."""
+        """Replace ``state.json``; raises a CheckpointError if the state is too large."""
         record = {
             "fingerprint": self._digest,
             "columns": columns,

@@ -1,4 +1,4 @@
-"""Distances of a run: entries of the summary, warnings and arrays."""
+"""Distances and keep-out zones of a run: entries of the summary, warnings and arrays."""
 
 from __future__ import annotations
 

@@ -8,16 +8,19 @@ from onorbit_rs.common.coordinates import BASE_NQ, BASE_NV
 _PREFIXES = {
     column.path.removesuffix("*"): name for name, column in COLUMNS.items() if column.path.endswith("*")
 }
-"""Names of the columns of each control, effect or contact, by the prefix of their paths."""
+"""Names of the columns of each control, effect, contact or loop, by the prefix of their paths."""
 
 
 def path_of(name: str, owner: str) -> str:
-    """Return the path of the column of one control, effect or contact."""
+    """Return the path of the column of one control, effect, contact or loop."""
     return COLUMNS[name].path.replace("*", owner)
 
 
 def split_path(path: str) -> tuple[str, str | None]:
-    """Return the name of the column with this path, and that of its control, effect or contact, or None."""
+    """Return the name of the column with this path, and the name of its owner.
+
+    The owner is a control, an effect, a contact or a loop; it is None for other columns.
+    """
     for prefix, name in _PREFIXES.items():
         if path.startswith(prefix):
             return name, path.removeprefix(prefix)

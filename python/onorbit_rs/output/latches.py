@@ -62,7 +62,11 @@ def _nearest(trace: WorldTrace, built: BuiltWorld, frames: list[list[str]], end:
 
 
 def _parting(trace: WorldTrace, built: BuiltWorld, names: list[str], end: float) -> dict[str, Any]:
-    """Return the last time before ``end``, s, at which two systems ceased to touch, and their motion then."""
+    """Return the last time before ``end``, s, at which two systems ceased to touch, and their speed then.
+
+    The speed, m/s, is that of the centre of mass of the second system relative to that of the first; the
+    spin, rad/s, is that of the second system's base.
+    """
     touching: set[str] = set()
     parted = None
     for record in trace.events:

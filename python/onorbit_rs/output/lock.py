@@ -122,8 +122,8 @@ class FolderLock:
 def owner_of(folder: Path) -> Owner | None:
     """Return the running process that holds the lock of a folder; None if there is none.
 
-    Returns None, too, if the lock file cannot be opened. The process has the number 0 if the lock file does
-    not name it.
+    Returns None, too, if the lock file cannot be opened. ``pid`` is 0 if the lock file does not identify the
+    process.
     """
     try:
         with open_to_read(folder / LOCK) as stream:

@@ -19,7 +19,7 @@ MOST_HELPERS = 3
 """Largest number of helper processes."""
 
 FIGURES_PER_HELPER = 3
-"""Number of figures per helper; with fewer, starting the process takes longer than it saves."""
+"""Smallest number of figures per helper; with fewer, starting the process takes longer than it saves."""
 
 _PROGRAM = "import sys; sys.path[:] = {path!r}; from onorbit_rs.figures.painter import main; main()"
 

@@ -39,7 +39,7 @@ class PickledTrace(SavedTrace):
         return self.results_of_methods["certificate"]
 
     def joint_limits_exceeded(self) -> Any:
-        """Return the names of the joints beyond their position limits."""
+        """Return the names of the joints beyond their position limits, as computed before pickling."""
         return self.results_of_methods["joint_limits_exceeded"]
 
     def __len__(self) -> int:

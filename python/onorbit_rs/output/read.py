@@ -92,7 +92,7 @@ class SavedRun:
             raise _unreadable(self.folder / name, name, error) from error
 
     def summary(self) -> dict[str, Any]:
-        """Return ``summary.json``; raises the errors of :func:`read_summary`."""
+        """Return the content of ``summary.json``; raises the errors of :func:`read_summary`."""
         file = self.folder / SUMMARY
         try:
             with self.opened(SUMMARY) as stream:
@@ -109,12 +109,12 @@ class SavedRun:
             raise _damaged(file, "summary", error) from error
 
     def trace(self) -> Trace:
-        """Return ``trace.npz`` of a run with one robot; raises the errors of :func:`read_trace`."""
+        """Return the trace of a run with one robot; raises the errors of :func:`read_trace`."""
         arrays = self._arrays({"time", "q", "v", "momentum"})
         return cast("Trace", SavedTrace(arrays))
 
     def world_trace(self) -> SavedWorldTrace:
-        """Return ``trace.npz`` of a run with several systems, with the names of events in the summary.
+        """Return the trace of a run with several systems, with the names of its events from the summary.
 
         Raises
         ------
@@ -251,7 +251,7 @@ def _hint(folder: Path) -> str:
 
 
 def read_summary(folder: Path) -> dict[str, Any]:
-    """Return ``summary.json`` of a run.
+    """Return the content of ``summary.json`` of a run.
 
     Raises
     ------

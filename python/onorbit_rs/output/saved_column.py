@@ -27,12 +27,12 @@ class SavedColumn:
     column: ClassVar[str]
     """Name of the column in ``onorbit_rs.COLUMNS``."""
     noun: ClassVar[str]
-    """Name in messages, with its article."""
+    """Name of the owner in messages, with its article, such as ``a contact``."""
     renamed: ClassVar[dict[str, str]] = {}
     """Parts of the column whose attributes have another name, by the name of the attribute."""
 
     def __getattr__(self, name: str) -> Floats:
-        """Return a quantity: (T,), or (T, n) for one of n entries."""
+        """Return a quantity of the column: (T,), or (T, n) if it has n components."""
         parts = COLUMNS[self.column].parts
         attributes = {part: part for part in parts if part not in self.renamed.values()} | self.renamed
         if name not in attributes:

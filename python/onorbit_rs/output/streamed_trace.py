@@ -26,8 +26,7 @@ _ROWS_AT_ONCE = 1000
 
 @dataclass(frozen=True, repr=False)
 class StreamedTrace(SavedTrace):
-    """Trace whose columns are read from files when they are used, with the attributes of
-    :class:`onorbit_rs.Trace`.
+    """Trace whose columns are read from files when used; has the attributes of :class:`onorbit_rs.Trace`.
 
     ``ending`` is the trace of the engine, which contains the first and the last rows and the certificate of
     all rows.
@@ -81,7 +80,7 @@ class StreamedTrace(SavedTrace):
         return self.with_rows(slice(None)).__reduce__()
 
     def read_from(self, arrays: Mapping[str, Any]) -> None:
-        """Read the columns from these arrays from now on, which have the same values."""
+        """Replace the columns by these arrays, which have the same values."""
         columns = cast("dict[str, Any]", self.arrays)
         columns.update({path: arrays[path] for path in columns})
 
@@ -129,7 +128,7 @@ class StreamedWorldTrace(SavedWorldTrace):
         return self._with_rows(systems, slice(None)).__reduce__()
 
     def read_from(self, arrays: Mapping[str, Any]) -> None:
-        """Read the columns of the systems from these arrays from now on, which have the same values."""
+        """Replace the columns of the systems by these arrays, which have the same values."""
         for name, own in self.systems.items():
             own.read_from(system_in(arrays, name).arrays)
 

@@ -121,7 +121,10 @@ def _norms(rows: Floats) -> Floats:
 
 
 def _controls(trace: Trace, built: Built) -> Summary:
-    """Return the largest errors and the outcomes of the goals of ``controllers``; empty if there is none."""
+    """Return tracking errors and outcomes of the goals of ``controllers``; empty if there are none.
+
+    The errors are the largest ones; for a control of a grip force, the error is that at the end.
+    """
     scenario = built.scenario
     if scenario.controllers is None:
         return {}

@@ -90,7 +90,7 @@ def _check(name: str, value: float | None, gate: float, passed: bool) -> Summary
 
 
 def _event(record: EventRecord) -> Summary:
-    """Return an event with its balances, and the magnitudes of the impulse on its second system."""
+    """Return the summary entry of an event: balances, and magnitudes of the impulse on its second system."""
     impulse = np.asarray(record.impulse)
     values: Summary = {
         "name": record.name, "kind": record.kind, "time_s": record.time, "systems": list(record.systems),

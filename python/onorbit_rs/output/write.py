@@ -97,9 +97,10 @@ def write_pictures(
     *,
     tell: Callable[[str], None] = lambda doing: None,
 ) -> None:
-    """Write the figures, if the trace has several rows, and the recording; ``tell`` is called with each task.
+    """Write the figures and the recording, as ``wanted`` selects; a trace of one row has no figures.
 
-    The figures are drawn by several processes, see :mod:`onorbit_rs.output.painters`.
+    ``tell`` is called with the description of each task. The figures are drawn by several processes, see
+    :mod:`onorbit_rs.output.painters`.
 
     For a world, the file names of a system's figures begin with the name of the system.
     """

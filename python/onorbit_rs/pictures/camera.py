@@ -53,7 +53,7 @@ class Camera:
 
     @classmethod
     def around(cls, points: Floats, direction: Floats, up: Floats, size: tuple[int, int]) -> Camera:
-        """Return a camera that looks from a direction at points (k, 3), m, and sees all of them."""
+        """Return a camera that lies in a direction from points (k, 3), m, and has all of them in view."""
         center = (points.min(axis=0) + points.max(axis=0)) / 2.0
         view = cls.looking(center + direction, center, up, size)
         x, y, z = ((points - center) @ view.axes.T).T
@@ -68,7 +68,7 @@ class Camera:
         return self.height / 2.0 / float(np.tan(np.radians(FIELD_OF_VIEW_DEG) / 2.0))
 
     def enlarged(self, times: int) -> Camera:
-        """Return the camera of the same picture with more pixels."""
+        """Return the same camera with ``times`` as many pixels in width and in height."""
         return Camera(self.position, self.axes, times * self.width, times * self.height)
 
     def project(self, points: Floats) -> Floats:

@@ -37,7 +37,10 @@ def corner_normals(faces: Floats) -> Floats:
 
 
 def _meeting(faces: Floats) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return all ordered pairs of corners, numbered from 0 to 4n - 1, at the same point, also with itself."""
+    """Return all ordered pairs of corners, numbered from 0 to 4n - 1, that are at the same point.
+
+    They include the pair of each corner with itself.
+    """
     points = faces.reshape(-1, 3)
     size = max(float(np.ptp(points, axis=0).max()), 1e-30) if len(points) else 1.0
     cells = np.round((points - points.min(axis=0, initial=0.0)) / (_SAME * size)).astype(np.int64)

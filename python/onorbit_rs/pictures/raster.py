@@ -75,7 +75,7 @@ class Canvas:
         self._fill(triangles, np.tile(color, (len(triangles), 1)))
 
     def _fill(self, projected: Floats, colors: Floats) -> None:
-        """Fill triangles (n, 3, 3) of pixels x and y and inverse depth, which is linear in x and y."""
+        """Fill triangles (n, 3, 3), given by pixels x and y and the inverse depth, linear in x and y."""
         size = np.array([self._view.width, self._view.height])
         low = np.ceil(projected[..., :2].min(axis=1) - 0.5).clip(0, size)
         high = np.ceil(projected[..., :2].max(axis=1) - 0.5).clip(0, size)

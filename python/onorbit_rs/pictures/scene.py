@@ -125,7 +125,7 @@ class Scene:
         return np.concatenate(near)
 
     def paths(self) -> list[tuple[str, Floats]]:
-        """Return the desired and the obtained path (k, 3), m, of each tool up to the time of the scene."""
+        """Return the whole desired path and the obtained path so far, (k, 3), m, of each tool, with names."""
         found = []
         for member in self.members:
             for name, column in (("desired", "reference_pose"), ("obtained", "tool_pose")):

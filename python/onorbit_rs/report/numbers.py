@@ -87,7 +87,7 @@ def groups(summary: dict[str, Any]) -> list[tuple[str, list[Row]]]:
 
 
 def row(key: str, value: Any) -> Row:
-    """Return one entry of a summary as a table row; the unit is the ending of the key."""
+    """Return one entry of a summary as a table row; its unit follows from the ending of the key."""
     ending, unit = next(((ending, unit) for ending, unit in _UNITS if key.endswith(ending)), ("", ""))
     words = _NAMES.get(key) or _words(key, key.removesuffix(ending))
     shown = value.replace("_", " ") if goal_of(key) and isinstance(value, str) else value

@@ -180,5 +180,5 @@ def _is_too_deep(error: Exception) -> bool:
 
 
 def _shortened(text: str) -> str:
-    """Return the start of an expression that is too long for a message."""
+    """Return an expression, cut off after 100 characters, for a message."""
     return text if len(text) <= 100 else f"{text[:100]} ..."

@@ -1,4 +1,4 @@
-"""Fingerprint of a robot, which identifies its bodies, joints, frames and visual shapes."""
+"""Fingerprint of a robot, which identifies its bodies, joints, closed loops, frames and visual shapes."""
 
 from __future__ import annotations
 
@@ -16,15 +16,16 @@ if TYPE_CHECKING:
 DIGITS = 9
 """Decimal places of lengths, m, and rotation matrices, so that rounding does not change the fingerprint.
 
-An inertia is divided by its largest entry. Masses, limits and losses have twelve significant digits.
+An inertia is divided by its largest entry. Other numbers of the file, such as masses and limits of joints,
+have twelve significant digits.
 """
 
 
 def fingerprint(model: Model) -> str:
     """Return sixteen hexadecimal digits that depend on the content of a robot, not on its path.
 
-    The digits depend on bodies, joints, closed loops, named frames and visual shapes, but not on colours or
-    on the content of mesh files.
+    The digits depend on bodies, joints, closed loops, named frames and visual shapes, but not on collision
+    shapes, colours or the content of mesh files.
     """
     content = {
         "bodies": [
@@ -65,7 +66,7 @@ def _spring(joint: Joint) -> list[Any]:
 
 
 def _loop(closing: Loop) -> list[Any]:
-    """Return the joint of a closed loop. Whether the start is projected does not change the robot."""
+    """Return the content of a closed loop, except its option ``project``, which does not change the robot."""
     poses = [_rounded(closing.pose_a), _rounded(closing.pose_b)]
     return [closing.name, closing.kind, closing.frame_a, closing.frame_b, *poses, _exact(closing.length)]
 

@@ -19,7 +19,10 @@ MAX_BITS = 2048
 
 
 class Work:
-    """Limit on the steps to expand a file, about 1 µs each; large robots use a tenth of the limit."""
+    """Limit on the number of steps in which a file is expanded; each step takes about 1 µs.
+
+    Large robots need a tenth of the default limit.
+    """
 
     def __init__(self, steps: int = 4_000_000) -> None:
         """Set the number of steps that are allowed."""

@@ -16,7 +16,7 @@ TOO_DEEP = f"macros, includes or elements are nested too deeply; {HINT}"
 
 
 class NestingError(RecursionError):
-    """A file is nested too deeply; the message contains the macro or the file."""
+    """Raised if a file is nested too deeply; the message contains the macro or the file."""
 
 
 class Nesting:

@@ -25,9 +25,9 @@ _WITHOUT_ELEMENT = "half_space", "hull", "cone", "torus"
 def urdf_text(model: Model, names: Mapping[str, str] | None = None) -> str:
     """Return the URDF of a robot; named frames become links without mass.
 
-    Lengths and angles are written in full precision. Paths of meshes are absolute. URDF has neither cones,
-    tori, half-spaces and convex pieces of meshes nor closed loops, static friction and rotor inertia; these
-    are omitted. Capsules and the springs of joints are written as the elements ``<capsule>`` and
+    Lengths and angles are written in full precision. Paths of meshes are absolute. Cones, tori, half-spaces,
+    convex pieces of meshes, closed loops, static friction and rotor inertia are omitted, because URDF has no
+    elements for them. Capsules and the springs of joints are written as the elements ``<capsule>`` and
     ``<spring>``, extensions that other readers of URDF may not know.
 
     Parameters

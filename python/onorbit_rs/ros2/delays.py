@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 _SHORTEST_S = 1e-7
-"""Delays below this, s, are counted together."""
+"""Delay, s, below which all delays are counted in the first class."""
 _PER_E = 100.0
 """Number of classes per factor e of the delay; quantiles are therefore accurate to 1 %."""
 _CLASSES = 2500

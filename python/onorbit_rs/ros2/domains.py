@@ -1,4 +1,4 @@
-"""DDS domains: which one a node joins, and how this process joins it."""
+"""Chooses the DDS domain of a node, and joins it."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ def require(*packages: str) -> None:
     Raises
     ------
     Ros2Error
-        With the command that installs them.
+        If a package is missing; the message contains the command that installs it.
     """
     missing = [name for name in packages if find_spec(name) is None]
     if missing:

@@ -46,7 +46,7 @@ class Inbox:
         self._senders: dict[str, set[object]] = {}
 
     def subscribe(self, topic: str, kind: str, convert: Callable[[Any], list[Entry]]) -> None:
-        """Subscribe to a topic, whose messages ``convert`` turns into entries."""
+        """Subscribe to a topic, whose messages ``convert`` converts to entries."""
         self._routes.append(Route(self._participant.reader(topic, kind), convert))
 
     def topics(self) -> Iterator[tuple[str, str]]:

@@ -113,7 +113,10 @@ class LiveRun:
         return own.external
 
     def next_time(self, shortest: float) -> float:
-        """Return the current time plus about ``shortest``, s, at least a tick, on the grid of ticks."""
+        """Return a time, s, on the grid of ticks that is about ``shortest``, s, and at least a tick ahead.
+
+        The time is not later than the end of the run.
+        """
         ticks = max(1, round(shortest / self.tick))
         return min(self.tick * (round(self.time / self.tick) + ticks), self.end)
 

@@ -13,11 +13,14 @@ from pathlib import Path
 from onorbit_rs.exceptions import Ros2Error
 
 PARTICIPANTS = 60
-"""Largest number of participants on this machine that find each other; ports of domain 232 end after 63."""
+"""Largest number of participants on this machine that find each other; domain 232 has ports for 63."""
 
 ENDING = """<CycloneDDS><Domain id="any"><Internal><WriterLingerDuration>0 s</WriterLingerDuration></Internal>
 </Domain></CycloneDDS>"""
-"""Publishers do not wait at their end for subscribers that have stopped: the node waits once for all."""
+"""Setting with which deleted publishers do not wait for subscribers that have stopped.
+
+The node waits once for all of its publishers.
+"""
 
 LOOPBACK = f"""<CycloneDDS><Domain id="any">
 <General><Interfaces><NetworkInterface address="127.0.0.1" multicast="false"/></Interfaces>
@@ -26,8 +29,9 @@ LOOPBACK = f"""<CycloneDDS><Domain id="any">
 <MaxAutoParticipantIndex>{PARTICIPANTS}</MaxAutoParticipantIndex>
 <SPDPInterval>500 ms</SPDPInterval><Peers><Peer address="127.0.0.1"/></Peers></Discovery>
 </Domain></CycloneDDS>"""
-"""Only 127.0.0.1 is used. A node that only listens to multicast is found only if the announcements are
-frequent.
+"""Settings with which only 127.0.0.1 is used.
+
+The announcements are frequent; otherwise, a node that only listens to multicast would not be found.
 """
 
 

@@ -109,7 +109,8 @@ class Node:
             Whether the node has real-time priority over other programs (``SCHED_FIFO`` of Linux) in pace
             ``real_time``. A warning is issued where this is not permitted.
         on_message : callable
-            Called with the text of each event, answer and warning that is published on ``/events``.
+            Called with the text of each answer and warning on ``/events``, and of each event except touches
+            of contacts.
 
         Raises
         ------
@@ -186,8 +187,9 @@ class Node:
         """Delays of the ticks in pace ``real_time``.
 
         ``late_median_s``, ``late_99_s`` (quantile of 99 %) and ``late_max_s`` are delays in wall-clock time,
-        s; ``missed`` is the fraction of the ticks late by more than a tick, ``slipped_s`` the time by which
-        the run has fallen behind for good, s, and ``ticks`` the number of ticks. Empty in another pace.
+        s; ``missed`` is the fraction of the ticks that are late by more than a tick, ``slipped_s`` the sum of
+        the delays that are not caught up, s, and ``ticks`` the number of ticks. The mapping is empty in
+        another pace.
         """
         return self._clock.report()
 
@@ -261,7 +263,7 @@ class Node:
 
 
 def _check(simulation: object, pace: str, log: _File | None, record: _File | None) -> None:
-    """Raise an error for arguments of a node that are wrong in themselves."""
+    """Raise an error for an invalid simulation or pace, or if both files of a node are the same."""
     if not isinstance(simulation, Simulation):
         raise DtypeError(
             f"the simulation is {simulation!r:.80}; give a Simulation, or use Node.of_scenario",

@@ -18,7 +18,7 @@ _LONGEST_SPIN_S = 3e-4
 _SPIN_PER_TICK = 0.3
 """Longest time before a tick in which the processor is kept busy, as a fraction of the tick."""
 _LONGEST_SLEEP_S = 0.05
-"""Longest time before a tick that is due later, s, in which the node does not read its topics."""
+"""Longest sleep, s, between two readings of the topics while the next tick is not near."""
 _BUSY_S = 0.1
 """Simulated time after a missed tick, s, without busy loops, which make Linux prefer other programs."""
 _PROBES = 20
@@ -38,7 +38,7 @@ class RealTime:
     tick: float
     """Simulated time between two waits, s."""
     slipped: float = 0.0
-    """Wall-clock time by which the simulation has fallen behind for good, s."""
+    """Sum of the delays that are not caught up, in wall-clock time, s."""
     early: float = 0.0
     """Time before a tick at which the sleep ends, s."""
     clock: Callable[[], float] = time.perf_counter
@@ -98,7 +98,10 @@ class RealTime:
         self.restart(t - left)
 
     def wait(self, t: float) -> None:
-        """Wait until simulated time ``t``, s, is due; count the delay, which is not caught up above 0.1 s."""
+        """Wait until simulated time ``t``, s, is due; count the delay.
+
+        A delay above 0.1 s is not caught up.
+        """
         while not self.approach(t):
             pass
         while (ahead := self.ahead(t)) > 0.0:

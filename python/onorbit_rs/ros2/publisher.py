@@ -29,7 +29,7 @@ class Publisher:
     ) -> None:
         """Create the publishers of all topics and publish the latched messages.
 
-        ``tell`` is called with the text of each event and answer.
+        ``tell`` is called with the text of each answer, and of each event except touches of contacts.
         """
         self._topics, self._tell, self._recording = topics, tell, recording
         self._writers = {name: participant.writer(name, kind) for name, kind in topics.names}
@@ -71,7 +71,7 @@ class Publisher:
                     writer.write(data[k].tobytes())
 
     def events(self, records: Iterable[EventRecord]) -> None:
-        """Publish events; ``tell`` is called with the text of captures and releases, not of touches."""
+        """Publish events; ``tell`` is called with the text of all but touch-downs and lift-offs."""
         for record in records:
             self._event(record.time, message_of_event(record))
             if record.kind not in OF_CONTACT:  # there may be thousands of touches

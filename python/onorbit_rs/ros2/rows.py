@@ -32,7 +32,7 @@ class Rows:
     columns: Mapping[str, Floats]
     """Values (T, width) by the name of the column."""
     wrenches: Mapping[str, Floats] = field(default_factory=dict)
-    """By effect, (T, 6 bodies): force, N, and torque, N m, at each body's centre of mass, in axes of W."""
+    """Wrenches (T, 6 n) on n bodies, by effect: force, N, and torque, N m, at the centre of mass, in W."""
 
     @classmethod
     def at_distinct_times(cls, columns: Mapping[str, Floats], wrenches: Mapping[str, Floats]) -> Rows:

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 _YOUNG = 700
 """Number of new objects after which garbage is collected, as in Python's own collector."""
 _SLACK_S = 5e-4
-"""Time until the next tick, s, in which a collection among new objects ends."""
+"""Time until the next tick, s, that suffices for a collection of new objects."""
 _TOO_MANY = 50 * _YOUNG
 """Number of new objects after which a collection does not wait for slack."""
 

@@ -137,7 +137,10 @@ def _orbit_pose(rows: Rows) -> dict[str, Floats]:
 
 
 def _orbit_twist(rows: Rows, orbit: Orbit | None) -> dict[str, Floats]:
-    """Return velocity of L's origin, m/s, and rate of L, rad/s, in ``eci``; without orbit, `r × v / r²`."""
+    """Return the velocity of L's origin, m/s, and the angular velocity of L, rad/s, in axes of ``eci``.
+
+    Without ``orbit``, the angular velocity is `r × v / r²`.
+    """
     r, v = rows["reference_position_eci"], rows["reference_velocity_eci"]
     if orbit is not None:
         rot_il, rate_l = orbit.lvlh(np.ascontiguousarray(rows.time))

@@ -1,4 +1,4 @@
-"""Transforms between the frames of a run: Earth, reference orbit, systems and their links.
+"""Transforms between the frames of a run: inertial axes, reference orbit, systems and their links.
 
 Poses are arrays (T, frames, 7): position, m, and quaternion xyzw of each frame in its parent frame.
 """

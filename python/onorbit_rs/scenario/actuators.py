@@ -38,7 +38,7 @@ class Brake(Part):
     """Name, unique among the actuators of the system."""
     joint: str
     slip_torque: SlipTorque | None = None
-    """Largest torque, or force of a prismatic joint, that the brake holds. Default: it holds rigidly."""
+    """Largest torque, N m, or force at a prismatic joint, N, that the brake holds. Default: unlimited."""
     engaged: bool = False
     """Whether the brake is engaged at the start."""
 
@@ -95,7 +95,7 @@ def check_actuators(owner: Location, actuators: list[Brake]) -> None:
 
 
 def check_brake(path: str, brakes: dict[str, list[str]]) -> str | None:
-    """Return the reason why a path ``SYSTEM/BRAKE`` is not that of a brake; None if it is.
+    """Return why ``path`` is not the path ``SYSTEM/BRAKE`` of a brake; None if it is.
 
     ``brakes`` contains the names of the brakes of each system.
     """

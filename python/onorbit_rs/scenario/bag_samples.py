@@ -28,7 +28,7 @@ class Sample(NamedTuple):
     """Positions, rad or m, and rates, rad/s or m/s, of joints at one time."""
 
     time: int
-    """Time, ns: since the first message, or since the start of a trajectory."""
+    """Time since the first message, or since the start of a trajectory, ns."""
     names: tuple[str, ...]
     positions: Floats
     """Positions (n,), rad or m."""
@@ -37,7 +37,7 @@ class Sample(NamedTuple):
 
 
 def read_samples(path: Path, topic: str | None) -> tuple[str, list[Sample]]:
-    """Return the joint motion recorded on one topic of a bag, after the name of the topic.
+    """Return the name of a topic of a bag, and the joint motion recorded on this topic.
 
     Parameters
     ----------

@@ -154,7 +154,7 @@ def build_environment(
 ) -> Environment:
     """Return the orbit, the Earth and the effects; raise an error if their data end before the run ends.
 
-    Without ``runs_code``, effects written in Python are inspected, and have no wrenches.
+    If ``runs_code`` is False, effects written in Python are inspected, not executed, and exert no wrenches.
     """
     duration, folder = scenario.simulation.duration, scenario.folder
     with located(scenario, "orbit"):
@@ -175,9 +175,9 @@ def build_environment(
 def build_effects(
     scenario: Scenario | WorldScenario, model: _core.Model | None, *, runs_code: bool = True
 ) -> list[_core.Effect]:
-    """Return the effects, whose links must exist on ``model``; None skips this check, as for a world.
+    """Return the effects; their links must exist on ``model``, unless it is None, as for a world.
 
-    Without ``runs_code``, effects written in Python are inspected, and have no wrenches.
+    If ``runs_code`` is False, effects written in Python are inspected, not executed, and exert no wrenches.
     """
     effects: list[_core.Effect] = []
     for index, effect in enumerate(scenario.effects):
@@ -213,10 +213,10 @@ def controlled(
     runs_code: bool,
     neighbours: Mapping[str, Neighbour] | None = None,
 ) -> tuple[Any, Any]:
-    """Return new controllers, or None without any, and the reference of a single controller, otherwise None.
+    """Return new controllers, or None if there are none, and the reference of a single controller, or None.
 
-    ``neighbours`` are the other systems of the world. Without them, controls that start after an event or
-    track a frame of another system are omitted.
+    ``neighbours`` are the other systems of the world. Without them, controls that require other systems are
+    omitted.
     """
     folder, tool = scenario.folder, scenario.tool
     start = Start(model, q, orbit, folder, neighbours=neighbours or {})

@@ -52,7 +52,7 @@ class BuiltWorld:
 
     scenario: WorldScenario
     systems: dict[str, Built]
-    """Objects of each system by name; their simulations contain one system alone."""
+    """Objects of each system, by name; the simulation in each contains that system alone."""
     orbit: _core.Orbit | None
     earth: _core.Earth | None
     simulation: _core.Simulation
@@ -254,7 +254,7 @@ def _try_one_step(scenario: WorldScenario, simulation: _core.Simulation) -> None
 
 
 def _is_issued(scenario: WorldScenario, message: str) -> bool:
-    """Return True for a mesh of ``collision`` with a defect, which caused a warning with its line before."""
+    """Return True for a warning about a mesh of ``collision``, which was issued before, with its line."""
     return any(
         f"the collision mesh {alone.folder / extra.shape.file} of the link" in message
         for alone in scenario.scenarios.values()

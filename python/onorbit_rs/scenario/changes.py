@@ -14,7 +14,7 @@ from onorbit_rs.scenario.yaml_lines import Lines, Location, parse_yaml
 _STEP = re.compile(r"\.?(?P<key>[^.\[\]]+)|\[(?P<index>[0-9]{1,6})\]")
 
 Changes = Mapping[str, Any]
-"""New values by path."""
+"""Mapping from the paths of entries of a scenario to their new values."""
 
 
 def parsed_changes(assignments: list[str] | None) -> dict[str, Any]:
@@ -86,8 +86,8 @@ def changed(data: Any, lines: Lines, changes: Changes) -> tuple[Any, Lines]:
 def misspelt(data: Any, path: str, changes: Changes) -> str:
     """Return a suggestion, ``; did you mean ...?``, for a key that a change adds; otherwise an empty string.
 
-    ``data`` is the scenario without the changes. A key is suggested that is similar to the last one of
-    ``path`` and in the same mapping.
+    ``data`` is the scenario without the changes. The suggested key is similar to the last key of ``path`` and
+    is in the same mapping.
     """
     if not any(change == path or change.startswith((f"{path}.", f"{path}[")) for change in changes):
         return ""

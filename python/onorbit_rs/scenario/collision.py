@@ -15,7 +15,10 @@ from onorbit_rs.scenario.shape import MostPieces, Shape
 
 
 class CollisionShape(Part):
-    """Collision shape of a link, in addition to those of the robot's file; several shapes form a union."""
+    """Collision shape of a link, in addition to those of the robot's file, or the division of its meshes.
+
+    Several shapes form a union.
+    """
 
     link: str
     """Name of the link."""
@@ -23,7 +26,8 @@ class CollisionShape(Part):
     pose: Pose | None = None
     """Pose of the shape in link axes. Default: the axes coincide."""
     pieces: MostPieces | None = None
-    """Instead of ``shape``: largest number of convex pieces of each collision mesh of the robot's file."""
+    """Instead of ``shape``: largest number of convex pieces into which each collision mesh that the robot's
+    file defines for the link is divided."""
 
     @model_validator(mode="after")
     def _has_a_shape_or_pieces(self) -> Self:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Connection(NamedTuple):
-    """A capture: its name, capturing and captured (system, frame), latch, and the names of its releases."""
+    """Connection of two systems by a capture; ``by`` captures ``of``, both given as (system, frame)."""
 
     name: str
     by: tuple[str, str]

@@ -85,9 +85,9 @@ class SpringDashpot(Part):
 
     kind: Literal["spring_dashpot"]
     stiffness: Annotated[Stiffness, Positive]
-    """Stiffness ``k``."""
+    """Stiffness ``k``, N/m."""
     damping: Annotated[Damping, NotNegative]
-    """Damping ``c``."""
+    """Damping ``c``, N s/m."""
 
     def build(self) -> _core.SpringDashpot:
         """Return the law as an object of the engine."""
@@ -123,8 +123,8 @@ class Friction(Part):
     static: Annotated[Number, NotNegative] | None = None
     """Coefficient of static friction, at least the kinetic coefficient."""
     materials: Annotated[list[str], Field(min_length=2, max_length=2)] | None = None
-    """Names of both materials, as an alternative to ``static`` and ``kinetic``: a pair of ``materials``, or
-    one with typical coefficients."""
+    """Names of both materials, as an alternative to ``static`` and ``kinetic``: a pair in ``materials`` of
+    the scenario, or a pair for which the engine has typical coefficients."""
     kinetic: Annotated[Number, NotNegative] | None = None
     """Coefficient of kinetic friction. Default: the static coefficient."""
     torsional: Annotated[Length, NotNegative] = 0.0
@@ -174,8 +174,8 @@ class Contact(Part):
     """Contact between the collision shapes of two sets of links."""
 
     between: Annotated[list[list[str]], BeforeValidator(_sides)]
-    """Links of both sides, each ``SYSTEM/LINK`` or a list of them; ``*`` stands for any text. The force acts
-    on the second side, and the opposite force on the first."""
+    """Links of both sides; each side is ``SYSTEM/LINK`` or a list of such links, and ``*`` stands for any
+    text. The force acts on the second side, and the opposite force on the first."""
     normal: NormalLaw | None = None
     """Law of the normal force, or of rigid impacts. Default: only the distance is recorded, and no force
     acts."""
@@ -239,7 +239,7 @@ def _fault_of_link(link: str, systems: list[str]) -> str:
 
 
 def touching_systems(contact: Contact, models: Mapping[str, _core.Model]) -> list[str]:
-    """Return the systems with links that the patterns of a contact match."""
+    """Return the names of the systems with links that the patterns of a contact match."""
     patterns = [link_pattern(link) for side in contact.between for link in side]
     return [
         name for name, model in models.items()

@@ -44,7 +44,7 @@ class Document(Part):
     _lines: Lines = PrivateAttr(default_factory=dict)
 
     def __init__(self, **data: Any) -> None:
-        """Validate the arguments; raises :class:`onorbit_rs.exceptions.ScenarioError`."""
+        """Validate the arguments; raise :class:`onorbit_rs.exceptions.ScenarioError` if they are invalid."""
         self._validate(data, None, {})
 
     @classmethod

@@ -34,7 +34,7 @@ def check_engine(scenario: Scenario) -> None:
 
 
 def check_world_engine(scenario: WorldScenario) -> None:
-    """Raise an error for events and systems that the engine does not support."""
+    """Raise an error for settings, contacts, events and systems that the engine does not support."""
     if scenario.engine == "native":
         if scenario.simulation.weld_time_constant is not None:
             message = (

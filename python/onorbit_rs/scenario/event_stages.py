@@ -80,8 +80,8 @@ def _elapsed(event: Event, capture: str, by_name: dict[str, Event]) -> float:
 def expected_order(events: Sequence[Event]) -> list[tuple[Event, float | None]]:
     """Return the events with their times, in the order in which they are expected to happen.
 
-    The time is None for latches and commands, and for events that wait for a latch or a command. Such events
-    are assumed to happen in the order of the scenario, after the event for which they wait.
+    The time is None for events with a latch or on command, and for events that follow such an event. Events
+    without a time are assumed to happen in the order of the scenario, after the event that they follow.
     """
     by_name = {event.name: event for event in events}
     times = {event.name: _time(event, by_name) for event in events}

@@ -146,7 +146,7 @@ class Action(Part):
 
 
 class Event(Part):
-    """Action with the condition at which it happens."""
+    """Event: an action, and the condition under which it happens."""
 
     name: ItsName
     when: When
@@ -169,7 +169,7 @@ class Event(Part):
 def check_events(
     events: list[Event], systems: list[str], brakes: dict[str, list[str]], contacts: Sequence[str] = ()
 ) -> None:
-    """Raise an error for unknown or duplicate names, and for events that wait for each other.
+    """Raise an error for unknown or duplicate names, invalid captures, and events that wait for each other.
 
     ``brakes`` contains the names of the brakes of each system, and ``contacts`` those of the contacts.
     """
@@ -211,7 +211,7 @@ def _refusal(index: int) -> Callable[..., Exception]:
 
 
 def split_path(path: str) -> tuple[str, str]:
-    """Return system and frame of a path; one of them is empty if the path is not valid."""
+    """Return the system and the frame of a path; one of them is empty if the path is not valid."""
     system, _, frame = path.partition("/")
     return system, frame
 

@@ -59,9 +59,9 @@ class InitialState(Part):
     position: Length3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
     attitude: Attitude | None = None
     linear_velocity: Speed3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
-    """Velocity of the base's origin, body axes."""
+    """Velocity of the base's origin relative to ``frame``, in body axes."""
     angular_velocity: AngularRate3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
-    """Angular velocity of the base, body axes."""
+    """Angular velocity of the base relative to ``frame``, in body axes."""
     joints: JointPositions = Field(default_factory=list)
     """Joint positions in the order of the model's joints, or by name."""
     joint_rates: JointRates = Field(default_factory=list)

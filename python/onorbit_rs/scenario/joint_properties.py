@@ -23,7 +23,7 @@ _DIMENSIONS = {
     "cubic_stiffness": (units.ANGULAR_CUBIC_STIFFNESS, units.LINEAR_CUBIC_STIFFNESS),
     "rest_position": (units.ANGLE, units.LENGTH),
 }
-"""Dimensions of each property, of a revolute and of a prismatic joint."""
+"""Dimensions of each property: first for a revolute joint, then for a prismatic joint."""
 
 
 def _reader(name: str, *, is_signed: bool = False) -> PlainValidator:

@@ -18,13 +18,13 @@ from onorbit_rs.scenarios import SCENARIOS
 AnyScenario = Scenario | WorldScenario
 
 _KINDS = {bool: "true or false", int: "a number", float: "a number", str: "text", list: "a list"}
-"""Words for the types that YAML yields besides mappings."""
+"""Descriptions, for messages, of the types other than mappings that YAML yields."""
 
 
 def load(
     source: str | os.PathLike[str] | Mapping[str, Any] | AnyScenario, *, changes: Changes | None = None
 ) -> AnyScenario:
-    """Return the validated scenario of a name, a file or a mapping.
+    """Return the validated scenario that a name, a file or a mapping defines.
 
     Parameters
     ----------

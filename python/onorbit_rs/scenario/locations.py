@@ -20,7 +20,7 @@ def dotted(at: tuple[str | int, ...]) -> str:
 
 
 def file_and_line(file: Path | None, line: int | None) -> str:
-    """Return file and line, such as ``mine.yaml:11``; ``scenario`` for a scenario created in Python."""
+    """Return the file and the line, as in ``mine.yaml:11``; ``scenario`` for a scenario made in Python."""
     return f"{file or 'scenario'}" + (f":{line}" if line else "")
 
 
@@ -46,7 +46,7 @@ def located(scenario: Document, *at: str | int) -> Iterator[None]:
 
 @contextmanager
 def located_warnings(scenario: Document, *at: str | int) -> Iterator[None]:
-    """Issue the warnings of the block after it, with file, line and key in front of their messages."""
+    """Issue the warnings of the block after its end, with file, line and key in front of their messages."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         yield

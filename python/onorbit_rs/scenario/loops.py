@@ -31,7 +31,7 @@ ACCEPTED = 1e-6
 
 
 class Loop(Part):
-    """Joint that closes a kinematic loop between two frames of one robot; the axis of the joint is z."""
+    """Joint that closes a kinematic loop between two frames of one robot; its axis, if it has one, is z."""
 
     synonyms: ClassVar = {"frames": "between", "type": "kind", "distance": "length"}
 
@@ -52,7 +52,7 @@ class Loop(Part):
     not close the loop is an error."""
 
     def of_system(self, system: str) -> Loop | None:
-        """Return the loop with the names of its frames in the robot of ``system``; None for others."""
+        """Return the loop with its frames named as in the robot of ``system``; None for another system's."""
         if self.between[0].partition("/")[0] != system:
             return None
         return self.model_copy(update={"between": [path.partition("/")[2] for path in self.between]})
@@ -67,7 +67,7 @@ class Loop(Part):
 
 
 def check_loops(loops: Sequence[Loop], systems: Sequence[str]) -> None:
-    """Raise an error for a name or a frame given twice, or for frames that are not on one system of a world.
+    """Raise an error for empty or duplicate names, equal frames, and frames that are not of one system.
 
     ``systems`` are the names of the systems; empty for a scenario of one robot.
     """
@@ -114,10 +114,10 @@ def add_loops(scenario: Scenario, model: _core.Model) -> _core.Model:
 
 
 def closed_start(scenario: Scenario, model: _core.Model, q: Floats, v: Floats) -> tuple[Floats, Floats]:
-    """Return the initial `q` and `v`, with mimic joints that follow their leaders and projected loops closed.
+    """Return the initial `q` and `v`, in which mimic joints follow their leaders and loops are closed.
 
-    ``q`` and ``v`` may be overwritten. If a loop without ``project`` is open, no loop is closed, and the
-    simulation raises an error.
+    Loops are closed only if one of them has ``project``. If a loop without ``project`` is open, no loop is
+    closed, and the simulation raises an error. ``q`` and ``v`` may be overwritten.
 
     Raises
     ------

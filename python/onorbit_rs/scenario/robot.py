@@ -136,12 +136,12 @@ class PlainRobot(Part):
             return _core.Model.from_urdf(**self._file(scenario.folder))
 
     def build_part(self, scenario: Scenario, at: Location) -> _core.RobotPart:
-        """Return a robot to be attached to another robot; its root link may be massless."""
+        """Return the robot as a part to be attached to another robot; its root link may be massless."""
         with located(scenario, *at), worded(_wording(at)):
             return _core.RobotPart.from_urdf(**self._file(scenario.folder))
 
     def _file(self, folder: Path) -> dict[str, Any]:
-        """Return the arguments of ``Model.from_urdf``."""
+        """Return the keyword arguments of ``Model.from_urdf`` for this robot."""
         return {
             "path": robots.path(self.bundled) if self.bundled is not None else folder / str(self.urdf),
             "package_paths": [folder / path for path in self.package_paths] or None,
@@ -176,7 +176,7 @@ class Arm(PlainRobot):
     frame: Name | None = None
     """Mounting frame of the arm. Default: its root link."""
     pose: Pose | None = None
-    """Pose of the mounting frame in ``at``."""
+    """Pose of the mounting frame in ``at``. Default: the axes coincide."""
     prefix: Name = ""
     """Prefix for the names of the arm's links, joints and frames."""
 
@@ -225,7 +225,7 @@ class Robot(PlainRobot):
         return add_loops(scenario, model)
 
     def _build_tree(self, scenario: Scenario) -> _core.Model:
-        """Return the robot with its arms, without the collision shapes of the scenario."""
+        """Return the robot with its arms, before joint properties, collision shapes and loops are added."""
         if self.bus is None:
             return self.build_plain(scenario, ("robot",))
         model = self.bus.build_plain(scenario, ("robot", "bus"))

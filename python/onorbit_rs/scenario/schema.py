@@ -48,7 +48,8 @@ class RobotKeys(Part):
     """Surfaces for drag and radiation pressure, if the effect defines no surfaces: one surface for all links,
     or a mapping from link to surface. Default: the visual geometry."""
     collision: list[CollisionShape] = Field(default_factory=list)
-    """Collision shapes in addition to those of the robot's file. They take part in contacts and distances."""
+    """Collision shapes in addition to those of the robot's file, or the division of its collision meshes into
+    convex pieces. They take part in contacts and distances."""
     actuators: list[Brake] = Field(default_factory=list)
     """Brakes of joints."""
 
@@ -113,7 +114,7 @@ class Scenario(RobotKeys, Document):
 
     @classmethod
     def _hint(cls, key: str, free: list[str]) -> str:
-        """Return the hint for an unknown key: the section that accepts the key, or the most similar key."""
+        """Return the hint for an unknown key: where the key belongs, or the most similar key."""
         parts = {"orbit": get_args(AnyOrbit), "initial": [InitialState], "simulation": [SimulationSettings]}
         sections = [repr(name) for name, kinds in parts.items()
                     if key != "kind" and any(key in part.yaml_keys() for part in kinds)]  # fmt: skip

@@ -43,9 +43,10 @@ class IntegrationSettings(Part):
     duration: Annotated[Time, Positive]
     """Duration of the run."""
     time_step: Annotated[Time, Positive] = 1e-3
-    """Step of the integrator."""
+    """Time step of the integrator."""
     integrator: Literal["rk4", "semi_implicit_euler", "dormand_prince"] = "rk4"
-    """``dormand_prince`` adapts its steps; ``time_step`` is then the interval of the time grid."""
+    """Integration method. ``dormand_prince`` adapts its steps; ``time_step`` is then the interval of the time
+    grid."""
     tolerance: Number = Field(default=1e-9, ge=1e-13, le=0.1)
     """Largest error of a step of ``dormand_prince``, relative to 1 rad, the size of the robot, and its
     rates."""
@@ -65,8 +66,8 @@ class IntegrationSettings(Part):
     def arguments(self) -> dict[str, Any]:
         """Return the settings as keyword arguments of :class:`onorbit_rs.Simulation`.
 
-        ``duration`` and the settings of the engine are omitted; ``rereference_beyond`` is an argument of
-        :class:`onorbit_rs.World`.
+        ``duration`` is omitted. For several systems, ``rereference_beyond`` is an argument of
+        :class:`onorbit_rs.World` instead.
         """
         values = self.model_dump(exclude_none=True, exclude={"duration"})
         if self.rereference_beyond == "never":
@@ -115,8 +116,10 @@ class WorldSettings(IntegrationSettings):
     """Time constant of the connections of ``engine: mujoco``. Default and minimum: two time steps."""
 
     def arguments(self) -> dict[str, Any]:
-        """Return the settings except ``duration`` and those of the engine, as keyword arguments of
-        :class:`onorbit_rs.Simulation` and, for ``rereference_beyond``, of :class:`onorbit_rs.World`.
+        """Return the settings, except ``duration`` and ``weld_time_constant``, as keyword arguments.
+
+        They are arguments of :class:`onorbit_rs.Simulation`, except ``rereference_beyond``, which is one of
+        :class:`onorbit_rs.World`.
         """
         values = super().arguments()
         values.pop("weld_time_constant", None)

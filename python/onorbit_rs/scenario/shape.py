@@ -98,7 +98,7 @@ class Torus(Part):
 
 
 class HalfSpace(Part):
-    """All points with z of at most 0; its surface is the plane z = 0."""
+    """Half-space of all points with z of at most 0; its surface is the plane z = 0."""
 
     kind: Literal["half_space"]
 
@@ -118,7 +118,7 @@ class MeshHull(Part):
     file: FilePath
     """STL or OBJ file."""
     scale: Number3 = Field(default_factory=lambda: [1.0, 1.0, 1.0])
-    """Factors along the axes of the mesh."""
+    """Scale factors along the axes of the mesh."""
     pieces: MostPieces | None = None
     """Largest number of convex pieces, which follow notches and holes. Default: the convex hull."""
 

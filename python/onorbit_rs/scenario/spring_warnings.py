@@ -59,8 +59,9 @@ def _fastest(model: Model, q: NDArray[np.float64]) -> tuple[float, str]:
     """Return the largest angular frequency, rad/s, and the joint whose spring has the largest part in it.
 
     The frequencies are the square roots of the eigenvalues of `M*⁻¹ K` with the reduced inertia
-    `M* = Mmm - Mmb Mbb⁻¹ Mbm` of the joints on the free base and the tangent stiffnesses `K`. A hardening
-    spring has at least its stiffness at the initial position; closed loops are not taken into account.
+    `M* = Mmm - Mmb Mbb⁻¹ Mbm` of the joints on the free base and the stiffnesses `K` of the springs: the
+    tangent stiffness at the initial position, or, if a spring softens, the stiffness at its rest position.
+    Closed loops are not taken into account.
     """
     mass = np.asarray(model.mass_matrix(q))
     coupling = mass[BASE_V][:, BASE_NV:]

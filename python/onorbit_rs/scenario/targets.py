@@ -22,7 +22,7 @@ PathFrame = Literal["world", "lvlh", "base"]
 
 @dataclass(frozen=True)
 class Target:
-    """Free-flying spacecraft: pose at time zero, constant velocity and angular velocity; W axes, SI."""
+    """Free-flying spacecraft: pose at time zero, constant velocity and angular velocity, in W and in SI."""
 
     position: Floats
     quat_xyzw: Floats

@@ -56,7 +56,7 @@ def about_controllers(scenario: Scenario) -> Iterator[None]:
 
 @contextmanager
 def about_start(scenario: Scenario) -> Iterator[None]:
-    """Add file, line and key to errors raised in the block.
+    """Add file, line and key to input and world errors raised in the block.
 
     The key is ``initial`` for errors about ``q`` and ``v``, the entry of a brake or loop for errors about it,
     and ``simulation`` for all others.
@@ -93,7 +93,10 @@ def try_one_step(scenario: Scenario, model: _core.Model, simulation: _core.Simul
 
 
 def try_effects(scenario: Scenario, effects: list[Any], flight: Flight) -> None:
-    """Run one step with each drag or radiation-pressure effect alone, to locate its errors."""
+    """Run one step with each drag or radiation-pressure effect alone, to locate its errors.
+
+    Only errors about the Earth, effects and frames are raised.
+    """
     for index, (part, effect) in enumerate(zip(scenario.environment, effects, strict=True)):
         if not isinstance(part, SurfaceEffect):
             continue

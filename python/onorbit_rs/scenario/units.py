@@ -131,7 +131,7 @@ def parse_quantity(value: object, *allowed: Dimension) -> float:
 
 
 def split_quantity(value: object) -> tuple[float, str]:
-    """Return the value of a quantity of any dimension in SI, and its unit as written, empty without a unit.
+    """Return the value of a quantity of any dimension in SI, and its unit as written, or an empty string.
 
     Raises
     ------

@@ -44,9 +44,10 @@ class KeepOutZone(Part):
     name: ItsName
     shape: Shape
     links: Links
-    """Links that must stay outside: ``SYSTEM/LINK``, or ``LINK`` for one robot; ``*`` stands for any text."""
+    """Links that must stay outside: paths ``SYSTEM/LINK``, or names of links in a scenario with one robot;
+    ``*`` stands for any text."""
     fixed_to: str = "world"
-    """``world``, ``lvlh`` (local frame of the reference orbit), or a frame with which the zone moves."""
+    """Frame of the zone: ``world``, ``lvlh`` (local frame of the reference orbit), or a frame of a robot."""
     pose: Pose | None = None
     """Pose of the shape in ``fixed_to``. Default: the axes coincide."""
 
@@ -61,7 +62,8 @@ class LeastDistance(Part):
 
     name: ItsName
     between: Annotated[list[Links], Field(min_length=2, max_length=2)]
-    """Both sides, each a link or a list. Links of one body or of neighbouring bodies are not compared."""
+    """Both sides, each a link or a list of links, written as for a keep-out zone. Links of one body or of
+    neighbouring bodies are not compared."""
 
     def build(self, folder: Path) -> Watch:
         """Return the declaration of the distance, which is evaluated on the rows of a trace."""
@@ -87,7 +89,9 @@ def _parts(scenario: Document) -> Iterator[tuple[Location, KeepOutZone | LeastDi
 
 
 def build_watches(scenario: Document, models: Mapping[str, _core.Model]) -> list[Watch]:
-    """Return zones and distances, checked against the links of the models; one robot has the name ``""``.
+    """Return zones and distances, after checking that their links exist.
+
+    ``models`` contains the robot of each system by name; the key of a single robot is ``""``.
 
     Raises
     ------

@@ -62,7 +62,7 @@ def read_yaml(path: Path) -> tuple[Any, Lines]:
 def parse_yaml(text: str, file: Path | None) -> tuple[Any, Lines]:
     """Return the data of a YAML text and the line of each entry, or raise ScenarioError.
 
-    ``file`` is the name in messages.
+    Error messages start with the name of ``file``.
     """
     reader = _NodeReader(file)
     try:

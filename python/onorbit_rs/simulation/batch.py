@@ -1,4 +1,4 @@
-"""Many simulations on several threads, such as worlds with captures and contacts."""
+"""Runs many simulations, such as those of worlds with captures and contacts, on several threads."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Gives commands from outside of a run to its stepper, and logs them."""
+"""Passes commands to the stepper of a run, and logs them."""
 
 from __future__ import annotations
 
@@ -137,7 +137,7 @@ class CommandLog:
             self._add(command)
 
     def _add(self, command: Command) -> None:
-        """Add a command that was given to the log."""
+        """Add a command to the log, after it was given to the stepper."""
         self.entries.append(command)
         if self._stream is not None and self._path is not None:
             with output_errors(self._path):

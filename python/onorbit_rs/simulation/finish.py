@@ -77,7 +77,7 @@ def _summary(
 
 @contextmanager
 def _noting(results: Callable[[], str]) -> Iterator[None]:
-    """Add a note to a Ctrl-C in the block: which results exist, and how to complete them."""
+    """Add a note to a ``KeyboardInterrupt`` in the block: which results exist, and how to complete them."""
     try:
         yield
     except KeyboardInterrupt as stop:

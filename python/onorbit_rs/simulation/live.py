@@ -109,7 +109,7 @@ def _advance(
 
 
 def _interrupted(stepper: Stepper, signal: KeyboardInterrupt) -> RunInterrupted:
-    """Return the exception with the recorded rows; a signal during a step already is that exception."""
+    """Return a RunInterrupted with the recorded rows; a signal raised during a step already is one."""
     if isinstance(signal, RunInterrupted):
         return signal
     message = f"the run was interrupted at t = {stepper.time:g} s"

@@ -18,8 +18,11 @@ if TYPE_CHECKING:
     from onorbit_rs.scenario.build import Built
 
 BASE, PER_ROWS, PER_RECORDED = 0.25e9, 2.2, 1.5
-"""Memory of a run that writes a folder: bytes for the loaded modules, and factors of the size of all rows and
-of the size of the rows in the recording. Measured with runs of 8e4 to 4e6 rows."""
+"""Memory of a run that writes a folder: bytes for the loaded modules, and two factors for the rows.
+
+The factors multiply the size of all rows and the size of the rows in the recording. The values were measured
+with runs of 8e4 to 4e6 rows.
+"""
 
 BASE_ALONE, PER_ROWS_ALONE = 0.12e9, 1.1
 """The same values for a run that writes no folder, which has no recording."""
@@ -28,8 +31,11 @@ LARGE = 1e9
 """Size of the rows in memory, bytes, above which a warning states the size."""
 
 FITTING = 60e6
-"""Size of the rows, bytes, above which a run with a folder writes them while it is computed, and for which a
-message suggests ``record_every``: a run with these rows in memory needs less than 500 MB."""
+"""Size of the rows, bytes, above which a run with a folder writes them while it is computed.
+
+Messages suggest a value of ``record_every`` that gives this size: a run with these rows in memory needs less
+than 500 MB.
+"""
 
 _ALWAYS = (
     "time", "q", "v", "tau", "acceleration", "momentum", "impulse", "kinetic_energy", "work", "dissipated",
@@ -70,8 +76,9 @@ def is_streamed(built: Built | BuiltWorld, *, has_folder: bool, is_viewed: bool)
 
 
 def check_size(built: Built | BuiltWorld, folder: Path | None, *, is_viewed: bool = False) -> None:
-    """Check that the rows of a run fit on the disk of ``folder`` and, if the run keeps them in memory, into
-    the memory; warn if many rows are kept in memory.
+    """Check that the disk of ``folder`` and the memory have enough space for the rows of a run.
+
+    The memory is checked only if the run keeps its rows in memory. A warning is issued if there are many.
 
     Raises
     ------
@@ -129,7 +136,10 @@ def _numbers_per_row(built: Built) -> int:
 
 
 def _available_memory() -> float | None:
-    """Return the memory, bytes, that programs can use without swapping; None if it is unknown."""
+    """Return the memory, bytes, that programs can use without swapping; None if it is unknown.
+
+    On systems without ``/proc/meminfo``, this is the whole physical memory.
+    """
     try:
         lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
         return 1024.0 * next(float(line.split()[1]) for line in lines if line.startswith("MemAvailable:"))

@@ -164,11 +164,11 @@ def run(
     scenario : str, path, mapping, Scenario or WorldScenario
         Name of a bundled scenario, a YAML file, its content as a mapping, or a loaded scenario.
     out : str or path, optional
-        Folder for trace, summary, figures and recording; None writes nothing.
+        Folder for the results, such as trace, summary, figures and recording; None writes nothing.
     force : bool
         Replace the files of an earlier run in ``out``.
     quiet : bool
-        Show no progress: no bar on a terminal, and no lines on another stderr.
+        Show no progress: no bar if stderr is a terminal, and otherwise no lines.
     view : bool
         Show the run in the viewer while it is simulated; without a display, a warning is issued.
     checkpoint_every : float
@@ -192,8 +192,8 @@ def run(
     OnOrbitError
         Before the run starts: for an invalid scenario (``ScenarioError``), a missing file
         (``NotFoundError``), a command or change that does not fit (``InputError``, ``ControlError``, …), rows
-        for which memory or disk are too small (``InputError``), or a folder that is not empty, not writable
-        or in use by another process (``OutputFolderError``).
+        that do not fit into the memory or on the disk (``InputError``), or a folder that is not empty, not
+        writable or in use by another process (``OutputFolderError``).
     SimulationError
         If the run diverges; the trace before the divergence is in the error and in ``out``.
     RunInterrupted
@@ -233,7 +233,7 @@ def resume(
     out : str or path
         Output folder with ``scenario.yaml`` and the last checkpoint.
     quiet : bool
-        Show no progress: no bar on a terminal, and no lines on another stderr.
+        Show no progress: no bar if stderr is a terminal, and otherwise no lines.
     view : bool
         Show the run in the viewer, from its beginning.
     checkpoint_every : float

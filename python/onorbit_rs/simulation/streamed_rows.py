@@ -1,4 +1,4 @@
-"""Rows of a run on their way from memory to the files of its checkpoint."""
+"""Moves the rows of a run from memory to the files of its checkpoint."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class StreamedRows:
     """
 
     def __init__(self, stepper: Stepper, writer: CheckpointWriter, built: Built | BuiltWorld) -> None:
-        """Begin with the rows of ``writer``, of which the stepper has the first and the last ones."""
+        """Store the stepper, which has the first and the last of the rows that ``writer`` has written."""
         self._stepper, self._writer = stepper, writer
         self._prefixes = {f"{name}/": name for name in built.systems} if isinstance(built, BuiltWorld) else {}
         in_memory = _counts(stepper.columns(), self._names)
@@ -44,7 +44,7 @@ class StreamedRows:
         return list(self._prefixes) or [""]
 
     def _saved(self) -> dict[str, int]:
-        """Return the number of rows at the beginning of those in memory that are also in the files."""
+        """Return, by prefix, how many of the rows in memory, from the first on, are also in the files."""
         return {prefix: self._writer.rows_of(prefix) - self._dropped[prefix] for prefix in self._names}
 
     def _since(self) -> int | dict[str, int]:
@@ -110,7 +110,7 @@ class StreamedRows:
 
 
 class _WorldColumns:
-    """Columns of a world, computed block by block before rows leave the memory."""
+    """Columns of a world, computed block by block before rows are removed from memory."""
 
     def __init__(self, stepper: Stepper, writer: CheckpointWriter) -> None:
         self._stepper = stepper
@@ -118,9 +118,9 @@ class _WorldColumns:
         self._since = -np.inf
 
     def take(self, in_memory: dict[str, int]) -> bool:
-        """Compute the columns at the times that leave the memory when all but ``KEPT`` rows are removed.
+        """Compute the world's columns at the times that are removed from memory if ``KEPT`` rows remain.
 
-        Return False if the rows must stay in memory, because too many of them are at the same time.
+        Return False if the rows must stay in memory, because too many of them have the same time.
         """
         first = {prefix[:-1]: max(rows - KEPT, 0) for prefix, rows in in_memory.items()}
         kept = self._stepper.columns(since=first)

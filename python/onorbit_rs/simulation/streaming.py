@@ -1,4 +1,4 @@
-"""Runs whose rows are written to the output folder while they are computed, with bounded memory."""
+"""Runs a simulation with bounded memory: rows are written to the output folder during the run."""
 
 from __future__ import annotations
 

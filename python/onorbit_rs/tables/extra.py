@@ -12,7 +12,7 @@ HINT = "pip install 'onorbit-rs[tables]'"
 
 
 def required(package: str, what: str) -> Any:
-    """Return an optional package.
+    """Import an optional package, and return it; ``what`` names the feature that requires it.
 
     Raises
     ------

@@ -163,7 +163,7 @@ class RecordedRun:
 
     @cached_property
     def epoch(self) -> str | None:
-        """Epoch of the run with its time scale, ``2024-03-01T12:00:00.000000 UTC``; None without an epoch."""
+        """Epoch with its time scale, such as ``2024-03-01T12:00:00.000000 UTC``; None without an epoch."""
         scenario = self._saved.scenario()
         orbit = None if scenario.orbit is None else scenario.orbit.build(self.folder)
         earth = build_earth(scenario.earth, scenario.epoch, orbit, self.folder)
@@ -171,12 +171,12 @@ class RecordedRun:
 
     @property
     def parts(self) -> list[dict[str, Any]]:
-        """Summary of the robot, or of each system."""
+        """Summaries of the systems; a run of one robot has a single one."""
         return list(self.summary["systems"].values()) if self.systems else [self.summary]
 
     @cached_property
     def is_about_earth(self) -> bool:
-        """True if the reference orbit is around the Earth."""
+        """True unless the reference orbit is around another planet than the Earth."""
         orbit = self._saved.scenario().orbit
         mu = None if orbit is None else orbit.build(self.folder).mu
         return mu is None or is_earth(mu)

@@ -72,7 +72,7 @@ class Arrows:
     _scales: dict[str, float] = field(default_factory=dict)
 
     def send(self, rows: TraceRows) -> None:
-        """Send the arrows at the centre of mass, of closed loops and of effects.
+        """Send the arrows of momenta, closed loops and effects.
 
         They are the momenta at the centre of mass, the forces and moments of the closed loops and, if
         recorded, the forces and torques of every effect.
@@ -115,7 +115,7 @@ class Arrows:
             self._send(rows, moment, points, values[:, :, about], at_surface=False)
 
     def _momenta(self, rows: TraceRows) -> Iterator[tuple[_Kind, Floats]]:
-        """Yield the momenta that are significant relative to the motion of the joints."""
+        """Yield the momenta that are significant relative to the kinetic energy, or that were sent before."""
         mass, energy = self.setting.model.mass, float(rows["kinetic_energy"].max())
         path, hue = self.setting.entity("arrows"), MOMENTUM
         (linear_entries, linear_unit), (angular_entries, angular_unit) = COLUMNS["momentum"].parts.values()

@@ -87,7 +87,10 @@ def scene_view(
 
 
 def _overrides(settings: Sequence[Setting], *, has_collisions: bool = False) -> dict[Any, Any]:
-    """Return the overrides of a 3-D view: trails until now and, unless wanted, hidden collision shapes."""
+    """Return the overrides of a 3-D view, which end trails at the current time and hide collision shapes.
+
+    With ``has_collisions``, the collision shapes are visible.
+    """
     found: dict[Any, Any] = {trail_of(setting, name): UNTIL_NOW for setting in settings for name in COLORS}
     hidden = [] if has_collisions else [setting for setting in settings if setting.collisions]
     return found | {collisions_of(setting): rrb.EntityBehavior(visible=False) for setting in hidden}
@@ -143,9 +146,10 @@ def near_path(rows: TraceRows, setting: Setting, viewpoint: Viewpoint) -> rrb.Vi
 
 
 def orbit_view(rows: TraceRows, settings: Sequence[Setting]) -> rrb.View:
-    """Return the view of the orbit: towards the start of the run, north up, with the whole path visible.
+    """Return the view of the orbit, with north up and the whole path in the picture.
 
-    ``rows`` are the rows of the first robot.
+    With a planet, the camera is above the side on which the run starts. ``rows`` are the rows of the first
+    robot.
     """
     setting = settings[0]
     position = rows["position_eci"] / 1e3

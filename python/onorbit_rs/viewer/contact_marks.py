@@ -33,7 +33,7 @@ COLOR, HELD = (255, 70, 90), (255, 175, 185)
 CONTACTS = "world/contacts"
 """Path of the entities of the contacts."""
 _LEGEND = (-0.45, -0.52)
-"""Places of the two lines of the legend below the scene, in sizes of the scene."""
+"""Heights of the two lines of the legend on the screen, from the middle upward, in sizes of the scene."""
 
 
 @dataclass(frozen=True)

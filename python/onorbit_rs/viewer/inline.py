@@ -1,4 +1,4 @@
-"""The viewer inside a notebook, a widget of the package rerun-notebook."""
+"""Displays the viewer inside a notebook, as a widget of the package rerun-notebook."""
 
 from __future__ import annotations
 

@@ -37,14 +37,14 @@ MOST_ROWS = 500
 """Largest number of rows per update."""
 
 LAST_ROWS_S = 5.0
-"""Wall-clock time for the viewer to receive the last rows, s."""
+"""Longest wall-clock time to wait until the viewer has received the last rows, s."""
 
 
 class View(ABC):
     """A live view of a run of ``duration_s`` seconds; errors of the view never stop the run."""
 
     def __init__(self, recording: rr.RecordingStream, duration_s: float) -> None:
-        """Prepare the view before the run starts."""
+        """Store the recording and the duration of the run; nothing is sent."""
         self._recording, self._duration_s = recording, duration_s
         self._angles: dict[str, Floats] = {}
         self._is_lost = False
@@ -64,7 +64,7 @@ class View(ABC):
 
     @abstractmethod
     def _release(self) -> None:
-        """Delete all references to the recording."""
+        """Delete the references to the recording in attributes of the subclass."""
 
     def take(self, columns: Mapping[str, Floats], events: Sequence[EventRecord] = ()) -> None:
         """Show the columns of a stepper from row :attr:`shown` on, and the events so far."""
@@ -132,7 +132,7 @@ class LiveView(View):
     """Live view of a run with one robot."""
 
     def __init__(self, recording: rr.RecordingStream, setting: Setting, duration_s: float) -> None:
-        """Prepare the view before the run starts."""
+        """Store the recording, the setting and the duration; static entities are sent with the first rows."""
         super().__init__(recording, duration_s)
         self._setting = setting
         self._stage: Viewpoint | None = None

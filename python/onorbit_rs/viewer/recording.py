@@ -191,7 +191,7 @@ def send_craft(
 
 
 def recorded_rows(count: int) -> NDArray[np.int64]:
-    """Return the indices of the rows of the trace that are recorded."""
+    """Return the indices of the rows of a trace with ``count`` rows that a recording contains."""
     stride = -(-count // MOST_STEPS)
     chosen = np.arange(0, count, stride)
     return chosen if chosen[-1] == count - 1 else np.append(chosen, count - 1)

@@ -1,4 +1,4 @@
-"""Shapes as rerun archetypes."""
+"""Converts shapes to rerun archetypes, and logs them."""
 
 from __future__ import annotations
 

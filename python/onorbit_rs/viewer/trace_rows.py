@@ -116,7 +116,7 @@ class TraceRows:
 
     @cached_property
     def rot_wl(self) -> Floats | None:
-        """Rotation (T, 3, 3) from L of the reference orbit to W; None if L is undefined."""
+        """Rotations (T, 3, 3) from L of the reference orbit to W; None if L is undefined."""
         if "reference_position_eci" not in self:
             return None
         r, v = self["reference_position_eci"], self["reference_velocity_eci"]
@@ -124,10 +124,10 @@ class TraceRows:
 
     @cached_property
     def quat_wl(self) -> Floats | None:
-        """Quaternion (T, 4) from L to W; None if L is undefined."""
+        """Quaternions xyzw (T, 4) of the rotation from L to W; None if L is undefined."""
         return None if self.rot_wl is None else quaternion_from_matrix(self.rot_wl)
 
     @cached_property
     def quat_lb(self) -> Floats | None:
-        """Quaternion (T, 4) from B to L; None if L is undefined."""
+        """Quaternions xyzw (T, 4) of the rotation from B to L; None if L is undefined."""
         return None if self.quat_wl is None else product(conjugate(self.quat_wl), self["q"][:, QUATERNION])

@@ -54,7 +54,10 @@ def world_layout(
     has_events: bool,
     is_live: bool = False,
 ) -> rrb.Blueprint:
-    """Return the layout of a run with several systems; the relative flight of ``bodies`` is shown."""
+    """Return the layout of a run with several systems, with a view of the relative flight of ``bodies``.
+
+    Without bodies, this view is omitted.
+    """
     setting, (common, alone) = world.setting, viewpoints
     settings, is_scene = list(setting.systems.values()), is_near(common, alone)
     axes = axes_of_camera(world.first)

@@ -190,7 +190,7 @@ def _send_arrow(
     style: tuple[float, Color],
     shown_s: float,
 ) -> None:
-    """Show the impulse on the second system for ``shown_s``; the arrow ends at the point of application."""
+    """Show the impulse on the second system for ``shown_s``, s, as an arrow to the point of application."""
     (scale, color), (name, frame) = style, connection.by
     system, rows = world.setting.systems[name], world[name]
     row = int(np.searchsorted(rows["time"], event.time, side="right")) - 1
@@ -224,7 +224,7 @@ def _shown_before(event: EventRecord, earlier: Sequence[EventRecord], shown_s: f
 def _send_label(
     recording: rr.RecordingStream, event: EventRecord, place: Floats, color: Color, shown_s: float
 ) -> None:
-    """Show the name of an event, its impulse and the energy lost above the scene for ``shown_s``."""
+    """Show the name, the impulse and the lost energy of an event above the scene for ``shown_s``, s."""
     path = f"world/lvlh/events/{event.name}"
     put_in(recording, path, FOLLOW)
     size = float(np.linalg.norm(event.impulse[:3]))

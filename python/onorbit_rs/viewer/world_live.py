@@ -31,7 +31,7 @@ class WorldLiveView(View):
     """Live view of a run with several systems and of its events."""
 
     def __init__(self, recording: rr.RecordingStream, setting: WorldSetting, duration_s: float) -> None:
-        """Prepare the view before the run starts."""
+        """Store the recording, the setting and the duration; static entities are sent with the first rows."""
         super().__init__(recording, duration_s)
         self._setting = setting
         self._stage: Stage | None = None
@@ -44,7 +44,7 @@ class WorldLiveView(View):
 
     @property
     def shown(self) -> int:
-        """Smallest number of rows that the view has received of any system."""
+        """Number of rows that the view has received of the system with the fewest."""
         return min(self._counts.values())
 
     def _show_columns(self, columns: Mapping[str, Floats], events: Sequence[EventRecord]) -> None:

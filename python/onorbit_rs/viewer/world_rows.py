@@ -73,7 +73,7 @@ class WorldRows:
 
     @cached_property
     def center(self) -> Floats:
-        """Centre of mass of all systems in W, (T, 3), m, at all times."""
+        """Centre of mass of all systems together in W, (T, 3), m, at the times of :attr:`all_times`."""
         time, total = self.all_times["time"], np.zeros((len(self.all_times), 3))
         masses = {name: system.model.mass for name, system in self.setting.systems.items()}
         for name, rows in self.systems.items():

@@ -50,7 +50,7 @@ def common_viewpoint(world: WorldRows) -> Viewpoint:
 
 
 def _from_beside(world: WorldRows, rot_fb: Floats) -> Floats:
-    """Return the direction (3,), in base axes, to a camera that sees two systems side by side."""
+    """Return the direction (3,), in base axes, to a camera in whose picture two systems are side by side."""
     setting = world.setting
     a, b = setting.connections[0].systems if setting.connections else setting.names[:2]
     line = world[b]["q"][0, POSITION] - world[a]["q"][0, POSITION]

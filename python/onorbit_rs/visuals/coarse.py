@@ -79,7 +79,7 @@ def _first_of_each(rows: NDArray[np.intp]) -> NDArray[np.intp]:
 
 
 def _cubes(points: Floats, edge: float) -> NDArray[np.int64]:
-    """Return the index of the cube that contains each point."""
+    """Return the number (n,) of the cube of this edge that contains each point (n, 3)."""
     low = points.min(axis=0)
     x, y, z = ((points - low) / edge).astype(np.int64).T
     number: NDArray[np.int64] = (x * (y.max() + 1) + y) * (z.max() + 1) + z
@@ -87,7 +87,7 @@ def _cubes(points: Floats, edge: float) -> NDArray[np.int64]:
 
 
 def _means(points: Floats, cluster: NDArray[np.intp]) -> Floats:
-    """Return the mean of the points of each cluster."""
+    """Return the mean (m, 3) of the points (n, 3) in each of m clusters, numbered by ``cluster`` (n,)."""
     return (
         np.stack([np.bincount(cluster, weights=axis) for axis in points.T], axis=-1)
         / np.bincount(cluster)[:, None]

@@ -65,13 +65,13 @@ def _planes(points: Floats, faces: Indices) -> tuple[Floats, Floats]:
 
 
 def _heights(points: Floats, normal: Floats, offset: Floats) -> Floats:
-    """Return the heights (f, k), m, of points (k, 3) over planes `normal · x = offset`."""
+    """Return the heights (f, k), m, of points (k, 3) above the planes `normal · x = offset`."""
     heights: Floats = normal @ points.T - offset[:, None]
     return heights
 
 
 def _farthest(points: Floats, faces: Indices, corners: Floats | None = None) -> tuple[Floats, Indices]:
-    """Return the largest height (k,), m, of each point over any face, 0 if inside, and the face (k,)."""
+    """Return the largest height (k,), m, of each point above a face, 0 if inside, and that face (k,)."""
     heights = _heights(points, *_planes(points if corners is None else corners, faces))
     if not len(points):
         return np.empty(0), np.empty(0, np.int64)

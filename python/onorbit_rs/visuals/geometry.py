@@ -49,7 +49,7 @@ class Shape:
 
 
 def extent(model: Model, robot: list[Shape], q: Floats) -> tuple[Floats, float]:
-    """Return centre (3,) in W, m, and diameter, m, of a sphere around a robot in all ``q`` (k, nq).
+    """Return centre (3,) in W, m, and diameter, m, of a sphere around a robot in all configurations (k, nq).
 
     The diameter is at least 0.1 m.
     """

@@ -66,7 +66,7 @@ def collision_shapes(model: Model) -> list[Shape]:
 
 
 def _hull_of(points: ArrayLike) -> Mesh:
-    """Return the convex hull of points (k, 3), m."""
+    """Return the convex hull of points (k, 3), m, as a mesh."""
     vertices, faces = convex_hull(np.asarray(points, dtype=np.float64))
     normals = vertices - vertices.mean(axis=0)  # rough, and sufficient for a wireframe
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)

@@ -22,7 +22,7 @@ _AROUND = 20
 """Number of faces around a round body in a figure."""
 
 MESH_TRIANGLES = 8_000
-"""Largest number of mesh triangles of a robot; it costs 1 s and 200 kB in a PDF, a tenth of that in a PNG."""
+"""Largest number of mesh triangles of a robot: 1 s and 200 kB in a PDF, and a tenth of that in a PNG."""
 
 
 def robot_polygons(

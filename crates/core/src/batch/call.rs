@@ -12,7 +12,7 @@ pub struct Rows<'a> {
     pub width: usize,
 }
 
-/// Output array with one row per state, one after the other.
+/// Output array with one row per state; the rows follow each other.
 pub type RowsMut<'a> = &'a mut [f64];
 
 /// External wrenches on the body of a frame, in frame axes about the frame origin, N and N m, linear first.

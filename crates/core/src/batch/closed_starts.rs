@@ -4,12 +4,12 @@ use super::input::InputError;
 use crate::model::Model;
 use crate::simulation::closed_start;
 
-/// Returns the states of `count` runs, starting with run `first`, of `q0`, `(B, nq)`, and `v0`, `(B, nv)`,
-/// with their loops closed as at the start of a simulation; `None` if the robot has no closed loops and no mimic
-/// joints.
+/// Returns the initial states, `(count, nq)` and `(count, nv)`, of `count` runs, starting with run `first`:
+/// the rows of `q0`, `(B, nq)`, and `v0`, `(B, nv)`, with their loops closed as at the start of a simulation;
+/// `None` if the robot has no closed loops and no mimic joints.
 ///
 /// # Errors
-/// [`InputError::OpenStart`] for the first of these states that opens a loop.
+/// [`InputError::OpenStart`] for the first of these states in which a loop is open or cannot be closed.
 pub(super) fn closed_starts(
     model: &Model,
     [q0, v0]: [&[f64]; 2],

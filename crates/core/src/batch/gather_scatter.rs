@@ -31,7 +31,8 @@ const BLOCK: usize = 64;
 #[repr(align(64))]
 struct BlockBuffer([f64; 8 * BLOCK]);
 
-/// Stores the lanes to rows, as many as `strides` has states. This is the inverse of [`gather`].
+/// Writes lanes to rows: entry `i` of the row of a state is its lane of `from[i]`. Lanes without a state are
+/// not written. This is the inverse of [`gather`].
 #[inline(always)]
 pub(super) fn scatter<S: Real>(from: &[S], strides: Strides, to: &mut [f64]) {
     let Strides { first, stride, count } = strides;

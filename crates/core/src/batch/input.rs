@@ -9,7 +9,7 @@ use thiserror::Error;
 
 /// Errors of batches: invalid inputs, and results that are not finite.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[allow(missing_docs)] // the fields are what the messages say
+#[allow(missing_docs)] // the messages explain the fields
 pub enum InputError {
     #[error("the array '{name}' has {got} per state; expected {expected} for this robot", got = count(*got, "number"))]
     WrongLength { name: &'static str, expected: usize, got: usize },

@@ -108,8 +108,8 @@ fn compute_chunk<S: Real>(
     }
 }
 
-/// Returns the single value in all lanes, or the values from index `from` on. Lanes after index `last` repeat
-/// its value.
+/// Returns the only element of `values` in all lanes or, if there are several, the elements from index `from`
+/// on, one per lane. Lanes after lane `last` repeat the value of that lane.
 #[inline(always)]
 fn pick<S: Real>(values: &[f64], from: usize, last: usize) -> S {
     if let [one] = values {

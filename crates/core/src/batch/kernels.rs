@@ -14,11 +14,11 @@ use crate::spatial::{Force, Real, pose_rows};
 /// Largest number of outputs that a kernel has.
 pub(super) const OUTPUTS: usize = 5;
 
-/// Quantity that is computed from a state. Frames are given by index. The inputs per state are `q` `(nq,)`;
-/// `v`, `a`, `tau` and `dv` `(nv,)`; and `joint_acceleration` `(n,)`.
+/// Quantity that is computed from a state. Frames are given by index. The inputs per state are `q` and `q2`,
+/// `(nq,)`; `v`, `a`, `tau` and `dv`, `(nv,)`; and `joint_acceleration`, `(n,)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kernel {
-    /// `q` → `(4, 4)` pose of a frame in W.
+    /// `q` → `(4, 4)` pose of a frame in W, with the position in m.
     FramePose(usize),
     /// `q, v` → `(6,)` twist at the frame origin, W axes, m/s and rad/s.
     FrameVelocity(usize),
@@ -32,8 +32,8 @@ pub enum Kernel {
     InverseDynamics,
     /// `q, v, tau` → `(nv,)` generalized accelerations, m/s² and rad/s².
     ForwardDynamics,
-    /// `q, v, tau` → `(nv,)` generalized accelerations with closed loops and mimic joints, and their `(m,)`
-    /// constraint forces, N and N m.
+    /// `q, v, tau` → `(nv,)` generalized accelerations with closed loops and mimic joints, m/s² and rad/s²,
+    /// and the `(m,)` constraint forces, N and N m.
     ConstrainedForwardDynamics,
     /// `q` → `(m,)` errors of closed loops and mimic joints, m and rad; `m` is the number of constraint
     /// equations.
@@ -50,8 +50,9 @@ pub enum Kernel {
     KineticEnergy,
     /// `q` → `(3,)` centre of mass in W, m.
     CenterOfMass,
-    /// `q, v` → reduced model without the base: mass matrix `M*` `(n, n)`, bias `c*` `(n,)`, external forces
-    /// `Q*` `(n,)`, generalized Jacobian `Jg` `(6, n)` of a frame and its drift `d` `(6,)`.
+    /// `q, v` → reduced model of the joints on a free-floating base ([`FreeFloating`]): mass matrix `M*`,
+    /// `(n, n)`; bias `c*` and external forces `Q*`, `(n,)`, N m (N); generalized Jacobian `Jg` of a frame,
+    /// `(6, n)`; and drift `d` of the frame, `(6,)`, m/s² and rad/s². The rows of `Jg` and `d` are in W axes.
     FreeFloating(usize),
     /// `q, v, joint_acceleration` → derivatives of the joint efforts, `∂τ/∂q`, `∂τ/∂v`, each `(n, nv)`, and
     /// of the acceleration `ẍ` and twist `ẋ` of a frame, `∂ẍ/∂q`, `∂ẍ/∂v`, `∂ẋ/∂q`, each `(6, nv)`.

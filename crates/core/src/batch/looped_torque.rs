@@ -22,8 +22,8 @@ pub(super) fn check(
     checked.map_err(|error| InputError::Controller { problem: error.to_string() })
 }
 
-/// Simulates one run with computed torque of all joints, and writes the recorded states to `q`, `(rows, nq)`, and
-/// `v`, `(rows, nv)`. Requires [`check`].
+/// Simulates one run with computed torque of all joints, and writes the recorded states to `q`, `(rows, nq)`,
+/// and `v`, `(rows, nv)`. Requires [`check`].
 pub(super) fn run<S: Scalar>(lanes: &mut Lanes<'_, S>, q: &mut [f64], v: &mut [f64]) {
     let RolloutControl::ComputedTorque(law, reference) = lanes.settings.control else { return };
     let model = only(&lanes.equations.trees).model.clone();

@@ -1,4 +1,5 @@
-//! Kernels, rollouts and orbits for one or many states. Inputs and outputs are flat arrays of `f64` rows.
+//! Kernels, rollouts and propagation of orbits, for one or many states. Inputs and outputs are flat arrays of
+//! `f64` rows.
 
 mod call;
 mod closed_starts;

@@ -78,7 +78,8 @@ pub fn propagate<'a>(
     }
 }
 
-/// Computes the rows of one orbit. Returns early if the batch is stopped.
+/// Computes the positions, m, and the velocities, m/s, of one orbit at `times`, each (T, 3). Returns early if
+/// the batch is stopped.
 fn fill(
     orbit: &dyn Orbit,
     times: &[f64],

@@ -14,13 +14,13 @@ use std::sync::{Mutex, PoisonError};
 impl Rollout<'_> {
     /// Simulates one run from each of the initial states `q0`, `(B, nq)`, and `v0`, `(B, nv)`, and writes the
     /// recorded states to `q`, `(B, rows, nq)`, and `v`, `(B, rows, nv)`, where `rows` is [`Rollout::rows`].
-    /// The results are bit-identical for any number of threads. The runs of a robot with closed loops or mimic
-    /// joints start with closed loops, as a simulation does.
+    /// The results are bit-identical for any number of threads. The runs of a robot with closed loops or
+    /// mimic joints start with closed loops, as a simulation does.
     ///
     /// # Errors
-    /// [`InputError`] for invalid inputs, [`InputError::OpenStart`] for a state that opens a loop, and
-    /// [`InputError::Diverged`] for the first state that becomes non-finite, after the results of all other states
-    /// were written.
+    /// [`InputError`] for invalid inputs, [`InputError::OpenStart`] for an initial state in which a loop is
+    /// open or cannot be closed, and [`InputError::Diverged`] for the first run whose state becomes
+    /// non-finite, after the results of all other runs were written.
     pub fn run(
         &self,
         model: &Model,
@@ -83,7 +83,8 @@ impl Rollout<'_> {
         }
     }
 
-    /// Simulates all runs, except those with computed torque of a robot with closed loops.
+    /// Simulates all runs of a robot; with computed torque, the robot must not have closed loops or mimic
+    /// joints.
     fn open<S: Real>(
         &self,
         model: &Model,

@@ -13,7 +13,7 @@ use crate::spatial::Real;
 use std::borrow::Cow;
 use std::sync::atomic::Ordering;
 
-/// Workspace that simulates a group of runs, one per SIMD lane.
+/// Settings, states and workspace of a group of simulated runs, one per SIMD lane.
 pub(super) struct Lanes<'a, S> {
     pub(super) settings: &'a Rollout<'a>,
     pub(super) equations: EquationsOfMotion<'a, S, NoLoads>,
@@ -44,7 +44,7 @@ impl<'a, S: Real> Lanes<'a, S> {
     /// Loads the initial states of `count` runs, starting with run `first`, and closes their loops.
     ///
     /// # Errors
-    /// [`InputError::OpenStart`] for the first of these states that opens a loop.
+    /// [`InputError::OpenStart`] for the first of these states in which a loop is open or cannot be closed.
     pub(super) fn start(
         &mut self,
         q0: &[f64],

@@ -12,14 +12,14 @@ pub(crate) const MOST_SWEEPS: usize = 4000;
 /// accepted although the iteration has not reached [`EXACT`].
 const ACCEPTED: f64 = 1e-9;
 
-/// Error: the iteration for the impulses has not converged.
+/// Error of an iteration for the impulses that has not converged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Unsolved {
     /// Largest change of a velocity in the last sweep, m/s.
     pub(crate) change: f64,
 }
 
-/// Rows of one point or of one joint stop in an impulse problem.
+/// Point of contact or joint stop in an impulse problem, with its rows and conditions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Block {
     /// Point of contact: one row along the normal and two across it.
@@ -31,7 +31,8 @@ pub(crate) enum Block {
     },
     /// Joint stop: one row.
     Stop {
-        /// Smallest permitted velocity away from the stop after the impulse, rad/s (m/s).
+        /// Smallest permitted velocity away from the stop after the impulse, rad/s (m/s for a prismatic
+        /// joint).
         target: f64,
     },
 }
@@ -58,7 +59,8 @@ impl Block {
 pub(crate) struct ImpulseProblem {
     /// Matrix `W`, `(n, n)`, row major, symmetric and positive semidefinite.
     pub(crate) matrix: Vec<f64>,
-    /// Velocities `b` without impulses, `(n,)`; for a point the normal velocity comes first.
+    /// Velocities `b` without impulses, `(n,)`, m/s (rad/s at the stop of a revolute joint). For a point,
+    /// the normal velocity comes first.
     pub(crate) free: Vec<f64>,
     pub(crate) blocks: Vec<Block>,
 }
@@ -69,7 +71,7 @@ impl ImpulseProblem {
         self.free.len()
     }
 
-    /// Returns the velocities `b + W p`.
+    /// Returns the velocities `b + W p` after the impulses `p`, `(n,)`.
     pub(crate) fn velocities(&self, p: &[f64]) -> Vec<f64> {
         (0..self.rows()).map(|row| self.velocity(row, p)).collect()
     }
@@ -191,7 +193,8 @@ impl ImpulseProblem {
 mod tests {
     use super::{Block, ImpulseProblem, Unsolved};
 
-    /// Tip of a uniform rod of 1 kg at 1 rad that hits a plane at 1 m/s and slides at 0.7 m/s.
+    /// Impulse problem of the tip of a uniform rod of 1 kg, inclined by 1 rad, that hits a plane at 1 m/s
+    /// and slides at 0.7 m/s.
     fn rod(friction: f64, restitution: f64) -> ImpulseProblem {
         let (s, c) = 1.0_f64.sin_cos();
         let (nn, nt, tt) = (1.0 + 3.0 * c * c, -3.0 * s * c, 1.0 + 3.0 * s * s);
@@ -222,7 +225,7 @@ mod tests {
         }
     }
 
-    /// Four points of one face: the normal impulses are not unique, but the velocities are.
+    /// At the four corners of a face, the normal impulses are not unique, but the velocities are.
     #[test]
     fn redundant_points_reach_their_targets() {
         // body of 1 kg with the radii of gyration 1 m, points at (±1, ±1) m
@@ -251,8 +254,8 @@ mod tests {
         assert!(problem.energy(&p) < 0.0);
     }
 
-    /// A row of `count` bodies of 1 kg between which all gaps have closed at 1 m/s, with Dirichlet's matrix
-    /// `W = tridiag(-1, 2, -1)`: the error falls by `cos²(π/(count + 1))` per sweep.
+    /// Impulse problem of a row of bodies of 1 kg between which `count` gaps close at 1 m/s. With its
+    /// matrix `W = tridiag(-1, 2, -1)`, each sweep multiplies the error by `cos²(π/(count + 1))`.
     fn row(count: usize) -> ImpulseProblem {
         let entry = |i: usize, j: usize| match i.abs_diff(j) {
             0 => 2.0,

@@ -12,11 +12,11 @@ use crate::world::FrameIndex;
 pub struct ContactLaw {
     /// Law of the normal force.
     pub normal: NormalLaw,
-    /// Law of friction; `None` without friction.
+    /// Law of friction; `None` if the contact has no friction.
     pub friction: Option<Friction>,
 }
 
-/// Settings of the evaluation of contacts and of the length of steps while bodies touch.
+/// Settings for the evaluation of contacts and for the length of steps while bodies touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactSteps {
     /// Number of steps in half a period of the fastest oscillation of a contact. An elastic impact with a
@@ -53,21 +53,21 @@ impl Default for ContactSteps {
     }
 }
 
-/// Convex piece of a link.
+/// Piece of the collision shape of a link.
 #[derive(Clone, Debug)]
 pub struct ContactSide {
     /// Frame to which the shape is fixed.
     pub frame: FrameIndex,
     /// Collision shape of the piece.
     pub shape: Shape,
-    /// Pose of the shape in the frame.
+    /// Pose of the shape in the frame, m.
     pub pose: Pose,
 }
 
 /// Contact between the pieces of two sets of links.
 #[derive(Clone, Debug)]
 pub struct Contact {
-    /// Name, which is unique among the contacts.
+    /// Name, which is unique among the contacts of the run.
     pub name: String,
     /// Pieces of the first and of the second side. The force of the contact acts on the second side, and the
     /// opposite force on the first.
@@ -82,11 +82,12 @@ pub struct Contact {
 }
 
 impl Contact {
-    /// Checks the law and the shapes.
+    /// Checks the laws and the shapes of the contact.
     ///
     /// # Errors
-    /// [`ContactError`] for the first invalid parameter or shape, if all pieces of both sides belong to the
-    /// same link, or for an impact law with compliant forces or with an overlap at the start.
+    /// [`ContactError`] for the first invalid parameter or shape, if all pieces of both sides belong to
+    /// the same link, or if an impact law is combined with compliant forces or with a permitted overlap at
+    /// the start.
     pub fn check(&self) -> Result<(), ContactError> {
         if let Some(law) = &self.law {
             law.normal.check()?;
@@ -116,7 +117,8 @@ impl Contact {
     }
 
     /// Returns the contact with the indices of its systems in the world replaced by their positions in
-    /// `numbers`, the systems of a group; `None` if a system of the contact is not in the group.
+    /// `numbers`, the list of the systems of a group; `None` if a system of the contact is not in the
+    /// group.
     pub(crate) fn in_group(&self, numbers: &[usize]) -> Option<Self> {
         let mut own = self.clone();
         for side in own.sides.iter_mut().flatten() {

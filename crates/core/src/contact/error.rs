@@ -28,7 +28,7 @@ pub enum ContactError {
         /// Rest of the message, which suggests similar links; may be empty.
         remedy: String,
     },
-    /// None of the links that match a pattern has a collision shape.
+    /// No link that matches a pattern has a collision shape.
     #[error(
         "contact '{contact}': link '{link}' of system '{system}' has no collision shape; add a <collision> element to the \
          link in its URDF"
@@ -64,7 +64,7 @@ pub enum ContactError {
     Overlap {
         /// Name of the contact.
         contact: String,
-        /// Paths `SYSTEM/LINK` of both links, as text.
+        /// Text with the paths `SYSTEM/LINK` of both links.
         links: String,
         /// Depth of the overlap, m.
         depth: f64,
@@ -106,7 +106,7 @@ pub enum ContactError {
     Unsolved {
         /// Names of the contacts, as text.
         contacts: String,
-        /// Number of points.
+        /// Number of points of contact.
         points: usize,
         /// Number of sweeps over all points.
         sweeps: usize,

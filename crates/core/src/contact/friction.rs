@@ -36,7 +36,7 @@ pub struct Friction {
     pub torsional: f64,
 }
 
-/// Deflection of the bristles of a contact, and whether they slip.
+/// State of the bristles of a contact: their deflection, and whether they slip.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bristle {
     /// Tangential deflection `z` of the second body relative to the first, m.
@@ -45,7 +45,7 @@ pub struct Bristle {
     pub is_slipping: bool,
 }
 
-/// Friction on the second body after a displacement.
+/// Friction force on the second body after a displacement, and the state of the bristles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrictionForce {
     /// Tangential force on the second body, N.
@@ -54,9 +54,9 @@ pub struct FrictionForce {
     pub bristle: Bristle,
     /// Rate of the deflection of the bristles, m/s: the sliding velocity without its plastic part.
     pub elastic_rate: Vec3<f64>,
-    /// Distance from the next change between sticking and slipping, negative beyond it, with the symbols of
-    /// [`Friction::after`]: `1 − |σ z + c v|/(μ N)` while the contact sticks, and `|σ z + c v|/(μ N) − 1`
-    /// while it slips.
+    /// Margin before the next change between sticking and slipping, relative to the limit `μ N` and
+    /// negative beyond the change, with the symbols of [`Friction::after`]: `1 − |σ z + c v|/(μ N)` while
+    /// the contact sticks, and `|σ z + c v|/(μ N) − 1` while it slips.
     pub margin: f64,
 }
 

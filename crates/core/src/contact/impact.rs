@@ -3,7 +3,7 @@
 
 use super::error::ContactError;
 
-/// Law of contact between bodies that do not deform.
+/// Law of impacts and of lasting contact between rigid bodies.
 ///
 /// An impact takes no time. At every point, the impulse `p` and the relative velocities `u⁻` before and `u⁺`
 /// after it satisfy

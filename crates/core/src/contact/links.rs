@@ -7,7 +7,7 @@ use crate::model::{Model, nearest};
 use crate::world::FrameIndex;
 use std::sync::Arc;
 
-/// Collision shapes of links.
+/// Collision shapes of the links that a pattern matches, and warnings about their meshes.
 #[derive(Debug, Default)]
 pub struct LinkShapes {
     /// Pieces, in the order of the systems and their links.
@@ -17,8 +17,9 @@ pub struct LinkShapes {
     pub warnings: Vec<String>,
 }
 
-/// Returns the collision shapes of the links whose paths `SYSTEM/LINK` match `pattern`, in which `*` stands
-/// for any text. `systems` are the names and models of the systems, and `contact` is the name of the contact.
+/// Returns the collision shapes of the links whose paths `SYSTEM/LINK` match `pattern`, in which `*`
+/// stands for any text. `systems` holds the names and models of the systems, and `contact` is the name of
+/// the contact, for messages.
 ///
 /// # Errors
 /// [`ContactError::NoLink`] if no link matches, [`ContactError::NoShape`] if none of the links that match has
@@ -57,7 +58,7 @@ pub fn links_matching(
 }
 
 impl LinkShapes {
-    /// Adds the pieces of the shape of a link.
+    /// Adds the pieces of the shape of a link, and its warnings.
     fn add(&mut self, frame: FrameIndex, LinkShape { shape, warnings }: LinkShape) {
         self.warnings.extend(warnings);
         match shape {

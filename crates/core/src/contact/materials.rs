@@ -2,7 +2,7 @@
 
 use crate::model::nearest;
 
-/// Coefficients of friction of two materials with clean and dry surfaces.
+/// Coefficients of friction between two materials with clean and dry surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MaterialPair {
     /// Names of both materials.
@@ -14,7 +14,7 @@ pub struct MaterialPair {
 }
 
 /// Typical coefficients of clean, dry surfaces in air. Coatings, oxide films and vacuum may change the
-/// coefficients several times over; clean metals may seize in vacuum.
+/// coefficients by a factor of several; clean metals may seize in vacuum.
 ///
 /// The source gives 1.4 for sliding aluminium, which exceeds its static coefficient; because the friction
 /// model requires a kinetic coefficient of at most the static one, the table repeats the static coefficient.

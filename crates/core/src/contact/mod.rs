@@ -1,11 +1,11 @@
-//! Contact laws: compliant normal forces and elastic-plastic friction.
+//! Contact laws: compliant normal forces, elastic-plastic friction, and rigid impacts.
 //!
 //! | Equation | Function |
 //! |-|-|
 //! | `F = k xⁿ (1 + d ẋ)` | [`NormalLaw::force`] |
 //! | `F = k x + c ẋ` | [`NormalLaw::force`] |
 //! | `d v₀ (1 + e) = ln[(1 + d v₀)/(1 − e d v₀)]` | [`dissipation_for`] |
-//! | `ż = v` inside the cone `\|σ z + c v\| ≤ μ N`, `\|z\| = μ N/σ` on it | [`Friction::after`] |
+//! | `ż = v` if `\|f\| ≤ μ N`, else `σ z + c ż = μ N f/\|f\|`; `f = σ z + c v` | [`Friction::after`] |
 //! | `0 ≤ p_n ⟂ u_n⁺ + e u_n⁻ ≥ 0`, `\|p_t\| ≤ μ p_n` | [`ImpactLaw`] |
 //!
 //! The normal force `F` depends on the depth `x`; the other symbols are defined in the documentation of the

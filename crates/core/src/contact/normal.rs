@@ -7,7 +7,7 @@ use super::error::{ContactError, at_least, positive};
 /// negative value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NormalLaw {
-    /// `F = k xⁿ (1 + d ẋ)`.
+    /// Law of Hunt and Crossley, `F = k xⁿ (1 + d ẋ)`.
     ///
     /// Source: Hunt and Crossley, Coefficient of Restitution Interpreted as Damping in Vibroimpact, Journal
     /// of Applied Mechanics 42, 1975.
@@ -19,7 +19,8 @@ pub enum NormalLaw {
         /// Dissipation `d`, s/m.
         dissipation: f64,
     },
-    /// `F = k x + c ẋ`. Unlike the law of Hunt and Crossley, the force jumps at touch-down.
+    /// Linear spring and damper, `F = k x + c ẋ`. In contrast to the law of Hunt and Crossley, the force
+    /// is discontinuous at touch-down.
     SpringDashpot {
         /// Stiffness `k`, N/m.
         stiffness: f64,
@@ -29,7 +30,7 @@ pub enum NormalLaw {
 }
 
 impl NormalLaw {
-    /// Returns the value of the law at the depth `x`, m, and the rate `rate`, m/s, in N. Bodies that can
+    /// Returns the value of the law, N, at the depth `x`, m, and the rate `rate`, m/s. Bodies that can
     /// separate exert no force where the value is negative.
     #[inline]
     pub fn force(&self, x: f64, rate: f64) -> f64 {
@@ -41,8 +42,8 @@ impl NormalLaw {
         }
     }
 
-    /// Returns a number that has the sign of [`NormalLaw::force`] at every depth `x > 0`, m, and the rate
-    /// `rate`, m/s. It is zero where the force changes from pressing to pulling.
+    /// Returns a number that has the sign of [`NormalLaw::force`] at the depth `x > 0`, m, and the rate
+    /// `rate`, m/s. It is zero where the force changes from compression to tension.
     #[inline]
     pub fn pressing(&self, x: f64, rate: f64) -> f64 {
         match *self {

@@ -8,8 +8,9 @@ const DIRECTIONS: usize = 64;
 /// the point slides.
 ///
 /// The point separates without an impulse if `b_n ≥ target`. Otherwise it sticks if the impulse that stops
-/// it, `W p = (target − b_n, −b_t)`, is inside the cone. Otherwise it slides. The result does not depend on
-/// the choice of the tangential axes.
+/// it, `W p = (target − b_n, −b_t)`, is inside the cone. Otherwise it slides. If no sliding impulse
+/// satisfies the conditions, friction is omitted. The result does not depend on the choice of the
+/// tangential axes.
 pub(super) fn point_impulse(w: &[[f64; 3]; 3], b: [f64; 3], friction: f64, target: f64) -> [f64; 3] {
     let lacking = target - b[0];
     if lacking.is_nan() || lacking <= 0.0 || w[0][0] <= 0.0 {
@@ -65,7 +66,7 @@ struct Trial {
     impulse: [f64; 3],
     /// Component of the sliding velocity across the assumed direction, which is zero at a solution, m/s.
     across: f64,
-    /// Component along the assumed direction, m/s.
+    /// Component of the sliding velocity along the assumed direction, m/s.
     along: f64,
 }
 

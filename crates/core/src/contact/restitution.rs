@@ -1,4 +1,4 @@
-//! Dissipation of Hunt and Crossley's law from a coefficient of restitution.
+//! Computation of the dissipation of Hunt and Crossley's law from a coefficient of restitution.
 
 use super::error::{ContactError, positive};
 

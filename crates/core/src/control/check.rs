@@ -15,12 +15,12 @@ use crate::model::Model;
 /// - two groups that share a joint while both controls are active, if the times of both controls are known
 ///   before the run;
 /// - gains, goals or references that are invalid or do not fit the group;
-/// - a goal, or a shift of the reference to the present state, of a control without a reference or with an
-///   external law;
+/// - a goal, or a shift of the reference to the present state, of a control without a tracking error or with
+///   an external law;
 /// - a shift of the reference, or a path tolerance, of a grip-force law;
 /// - a grip force that exceeds the effort limits of the joints;
 /// - a load, or internal forces, of a law that does not use them;
-/// - an empty time window;
+/// - a time window that is empty or begins at a time that is not finite;
 /// - a start after a control that does not exist, that never ends or that waits for this control itself;
 /// - computed-torque laws of which only some compensate the environment.
 pub fn check_controls(controls: &[Control], model: &Model) -> Result<(), ControlError> {

@@ -23,12 +23,13 @@ pub struct Control {
     pub internal_forces: Vec<InternalForce>,
     /// Condition under which the control starts.
     pub begin: Begin,
-    /// End time, s. If it is infinite, the control ends with the run or when a successor stops it.
+    /// End time, s; infinity for none. A control that starts after this one, or at an event, may stop it
+    /// earlier.
     pub end: f64,
     /// Tolerances of the tracking error; `None` if the control has no goal.
     pub goal: Option<Goal>,
-    /// True if the reference is shifted to begin at the pose, or at the joint positions, at the start of the
-    /// control.
+    /// True if the reference is shifted so that it begins at the pose, or at the joint positions, that the
+    /// robot has at the start of the control.
     pub starts_at_present: bool,
     /// True if the trace has a `tracking` column with the error of this control. If false, a tracked frame
     /// must be the tool of the run, whose error is recorded in `position_error` and `attitude_error`.
@@ -80,9 +81,9 @@ impl Control {
         Self { has_column: false, ..Self::new("control", joints, law) }
     }
 
-    /// Returns the number of components of the tracking error: 6 for a frame (m, then rad), one per joint for a
-    /// reference of positions or rates, and 0 without a reference or if the reference commands efforts. A law
-    /// that follows external commands has one component per joint, which is zero while no positions are
+    /// Returns the number of components of the tracking error: 6 for a frame (m, then rad), one per joint for
+    /// a reference of positions or rates, and 0 without a reference or if the reference commands efforts. A
+    /// law that follows external commands has one component per joint, which is zero while no positions are
     /// commanded. A grip-force law has one component, the error of the grip force, N.
     pub fn width(&self) -> usize {
         match (self.law.task(), self.law.joint_reference()) {
@@ -101,7 +102,8 @@ impl Control {
         task.or_else(|| self.law.joint_reference().map(|path| path.duration())).unwrap_or(0.0)
     }
 
-    /// Returns the start and end times, s, that are known before the run and are later than zero.
+    /// Returns those of the start and end times of the control, s, that are known before the run and are
+    /// later than zero.
     pub fn switch_times(&self) -> impl Iterator<Item = f64> {
         let start = if let Begin::At(start) = self.begin { start } else { 0.0 };
         [start, self.end].into_iter().filter(|t| t.is_finite() && *t > 0.0)

@@ -30,10 +30,11 @@ pub struct ControlMemory {
     /// Time at which the control started, s.
     pub(super) start: f64,
     pub(super) outcome: Outcome,
-    /// True if the control holds the pose or the joint positions of the instant at which its goal was missed.
+    /// True if the control holds the pose, or the joint positions, that the robot had when the goal was
+    /// missed.
     is_held: bool,
-    /// True if the reference is shifted to begin at the pose or the joint positions at the start of the
-    /// control.
+    /// True if the reference is shifted so that it begins at the pose, or at the joint positions, that the
+    /// robot has at the start of the control.
     is_shifted: bool,
     /// Shift of the reference, or configuration that is held: a pose (12 numbers: the columns of the rotation
     /// matrix, then the position, m) or the joint positions of the group, rad (m).
@@ -64,7 +65,8 @@ pub(super) struct ControlState {
     pub(super) desired_pose: Option<TaskSample<f64>>,
     /// Pose of the tracked frame: relative to the base if the reference is, otherwise in W.
     pub(super) pose: (Mat3<f64>, Vec3<f64>),
-    /// Pose of the tracked frame in the frame of the load to which the reference applies; `None` without a load.
+    /// Pose of the tracked frame in the frame of the load to which the reference applies; `None` without a
+    /// load.
     pub(super) tool_in_load: Option<(Mat3<f64>, Vec3<f64>)>,
     /// Tracking error, desired less actual, of length [`Control::width`].
     pub(super) error: Vec<f64>,
@@ -161,7 +163,8 @@ impl ControlState {
         }
     }
 
-    /// Returns the pose of the frame to which the reference applies: that of the load, or the tracked frame.
+    /// Returns the pose of the frame to which the reference applies: the frame of the load or, without a
+    /// load, the tracked frame.
     fn followed_pose(&self) -> (Mat3<f64>, Vec3<f64>) {
         let (rot, pos) = self.pose;
         match &self.tool_in_load {

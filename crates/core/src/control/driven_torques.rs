@@ -3,8 +3,9 @@
 use crate::dynamics::{IndependentJoints, solve_semidefinite};
 use crate::spatial::{cholesky_factor, cholesky_solve, dot};
 
-/// Distribution of efforts to the driven joints `A`; the symbols are those of
-/// [`LoopedDynamics`](super::looped_dynamics::LoopedDynamics). The buffers keep their capacity between updates.
+/// Distribution of the efforts of the independent coordinates to the driven joints `A`; the symbols are those
+/// of [`LoopedDynamics`](super::looped_dynamics::LoopedDynamics). The buffers keep their capacity between
+/// updates.
 #[derive(Debug, Default)]
 pub(super) struct DrivenTorques {
     pub(super) driven: Vec<usize>,
@@ -69,8 +70,8 @@ impl DrivenTorques {
         (0..self.driven.len()).for_each(|place| write(place, dot(&self.map[place * k..(place + 1) * k], u)));
     }
 
-    /// Replaces `x`, `(a,)`, by its projection `P x = x − G_A (G_Aᵀ G_A)⁻¹ G_Aᵀ x` onto the torques that cause
-    /// no motion. `u` is a buffer.
+    /// Replaces `x`, `(a,)`, by its projection `P x = x − G_A (G_Aᵀ G_A)⁻¹ G_Aᵀ x` onto the torques that
+    /// cause no motion. `u` is a buffer.
     fn project(&self, x: &mut [f64], u: &mut Vec<f64>) {
         let k = self.columns.len();
         u.clear();
@@ -81,9 +82,10 @@ impl DrivenTorques {
         self.apply(u, |place, part| x[place] -= part);
     }
 
-    /// Computes the smallest torques `t`, `(a,)`, N m (N), with `G_Aᵀ t = 0` that change the constraint forces
-    /// from `force`, N and N m, to the commanded ones, as far as torques can. `commanded` has the index and the
-    /// force of each commanded row. Calls `write(joint, torque)` for each driven joint.
+    /// Computes the smallest torques `t`, `(a,)`, N m (N), with `G_Aᵀ t = 0` that change the constraint
+    /// forces from `force`, N and N m, to the commanded ones, as far as joint torques can change them.
+    /// `commanded` has the index and the force of each commanded row. Calls `write(joint, torque)` for each
+    /// driven joint.
     ///
     /// A torque `t` changes the commanded forces by `δλ = −Wᵀ t`, where `W` has a row per driven joint and a
     /// column per commanded row. With `(Wᵀ P W) μ = δλ`, the result is `t = −P W μ`.

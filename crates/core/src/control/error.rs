@@ -7,7 +7,7 @@ use thiserror::Error;
 
 /// Errors of invalid controls and commands, and errors that occur in controls during a run.
 #[derive(Debug, Error)]
-#[allow(missing_docs)] // the fields are what the messages say
+#[allow(missing_docs)] // the messages explain the fields
 pub enum ControlError {
     #[error("the list '{name}' has {got}; expected {expected}", got = count(*got, "number"))]
     WrongLength { name: &'static str, expected: String, got: usize },
@@ -232,7 +232,7 @@ pub enum ControlError {
     OfControl { control: String, source: Box<ControlError> },
     #[error("at t = {time} s: {source}", time = short(*time))]
     Reference { time: f64, source: ReferenceError },
-    /// Error of a user's controller, unchanged.
+    /// Error that a user-defined controller returned, passed on unchanged.
     #[error(transparent)]
     User(Box<dyn std::error::Error + Send + Sync>),
 }
@@ -265,8 +265,8 @@ fn named(known: &[String], name: &str) -> String {
     if known.is_empty() { externals(known) } else { nearest(known, name) }
 }
 
-/// Returns the hint for a control that does not follow commands: the names of the controls that do or, without
-/// any, the advice to declare one.
+/// Returns the hint for a control that does not follow commands: the names of the controls that do or,
+/// without any, the advice to declare one.
 fn externals(known: &[String]) -> String {
     match known {
         [] => "; use an External controller for the joints to be commanded".to_owned(),

@@ -77,7 +77,8 @@ impl ExternalCommand {
         }
     }
 
-    /// Returns true if the command has only efforts.
+    /// Returns true if the command has neither positions nor rates, so that its efforts are the joint
+    /// torques.
     pub(super) fn is_effort(&self) -> bool {
         matches!(self, Self::Setpoint(Setpoint { position: None, velocity: None, .. }))
     }

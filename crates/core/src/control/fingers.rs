@@ -46,7 +46,7 @@ pub(super) fn fingers_of(joints: &[usize], model: &Model) -> Vec<Finger> {
 }
 
 impl Finger {
-    /// Returns true if the joint of the finger moves a body (index).
+    /// Returns true if the joint of the finger moves the body with the index `body`.
     pub(super) fn moves(&self, body: usize, model: &Model) -> bool {
         let first = self.joint + 1;
         (first..model.nodes()[first].end).contains(&body)

@@ -7,7 +7,7 @@ use super::error::ControlError;
 pub struct PerJoint(Vec<f64>);
 
 impl PerJoint {
-    /// Creates the parameter; a single number applies to all joints.
+    /// Creates a parameter with one number per joint; a single number applies to all joints.
     pub fn new(numbers: Vec<f64>) -> Self {
         Self(numbers)
     }

@@ -6,12 +6,15 @@ use serde::{Deserialize, Serialize};
 
 /// Tolerances of a tracked path, as in the joint trajectory controller of ROS.
 ///
-/// The error has one component per joint of the group, rad or m (rad/s or m/s if rates are commanded); the
-/// error of a task has two: the distance, m, and the angle, rad. The goal fails if an error exceeds `path`
-/// before the end of the path. After the end of the path, the goal is reached as soon as all errors are
-/// within `tolerance`. It fails if this has not happened `time` seconds after the end. After a failure the
-/// control holds the present joint positions, or the present pose: relative to the base if the reference is,
-/// otherwise in W.
+/// The error has one component per joint of the group, rad or m (rad/s or m/s if rates are commanded). The
+/// error of a tracked frame has two components: the distance, m, and the angle, rad. That of a grip-force law
+/// has one: the error of the grip force, N.
+///
+/// The goal fails if an error exceeds `path` before the end of the path. After the end of the path, the goal
+/// is reached as soon as all errors are within `tolerance`. It fails if this has not happened `time` seconds
+/// after the end. After a failure the control holds the present joint positions, or the present pose:
+/// relative to the base if the reference is, otherwise in W. If rates are commanded, the desired rates are
+/// then zero. A grip-force law continues unchanged.
 #[derive(Clone, Debug)]
 pub struct Goal {
     /// Largest permitted errors during the path, in units of the error; `None` for no limit.
@@ -43,12 +46,14 @@ pub enum Outcome {
 /// Error that exceeded its tolerance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Miss {
-    /// Index of the joint in the group; for a task, 0 is the position and 1 the attitude.
+    /// Index of the joint in the group. For a tracked frame, 0 is the position and 1 the attitude; for a
+    /// grip-force law, 0 is the grip force.
     pub component: usize,
     /// Simulation time at which the error was evaluated, s.
     pub time: f64,
-    /// Error of the component, desired less actual, rad or m (rad/s or m/s if rates are commanded); for a
-    /// task, the distance, m, or the angle, rad.
+    /// Error of the component, desired less actual, rad or m (rad/s or m/s if rates are commanded). For a
+    /// tracked frame, it is the distance, m, or the angle, rad; for a grip-force law, the error of the force,
+    /// N.
     pub error: f64,
 }
 
@@ -102,7 +107,7 @@ impl Goal {
     }
 
     /// Returns the outcome for `errors` at the simulation time `time`, s, which is `clock` seconds after the
-    /// start of a path of the length `duration`, s.
+    /// start of a path that lasts `duration`, s.
     pub(super) fn judge(&self, time: f64, clock: f64, duration: f64, errors: &[f64]) -> Outcome {
         let miss = |tolerance: &PerJoint| {
             let component = errors.iter().enumerate().position(|(i, e)| e.abs() > tolerance.at(i))?;

@@ -1,4 +1,4 @@
-//! Closing of a gripper to a force.
+//! Grip-force law: closes a gripper and then grips the object with a given force.
 
 use super::control_law::{ControlLaw, EffortInput, EffortWork};
 use super::error::ControlError;
@@ -7,21 +7,21 @@ use super::gains::{PerJoint, check_numbers};
 use super::grip_memory::GripMemory;
 use crate::model::{Axis, BASE_NQ, Model};
 
-/// Law that closes the fingers of a gripper at a given rate until they touch an object, and then grips it with
-/// a given force.
+/// Law that closes the fingers of a gripper at a given rate until they touch an object, and then grips it
+/// with a given force.
 ///
 /// A finger is moved by a joint of the group, or by a joint that mimics one of them. `N` is the mean of the
 /// normal forces of all fingers, computed from the contact forces of the simulation. Until all fingers touch,
-/// each joint moves at its closing rate `r`: `τ = d (r − q̇)`. Then the desired force `F` increases to `force`
-/// within the time `ramp`, and
+/// each joint moves at its closing rate `r`: `τ = d (r − q̇)`. Then the desired force `F` increases to
+/// `force` within the time `ramp`, and
 ///
 /// `τ = λ (F + ∫ i (F − N) dt) − d q̇ − p Δ`
 ///
-/// with the lever `λ` of the joint: the effort that balances a normal force of 1 N at each of its fingers. The
-/// lever follows from the points and normals of the contacts. `Δ` is the displacement of the joint since all
-/// fingers touched, without its component along the closing motion; the stiffness `p` thus keeps independent
-/// joints from moving sideways together with the object. If a finger loses contact, the gripper closes at its
-/// closing rate again.
+/// with the lever `λ` of the joint: the effort that balances a normal force of 1 N at each of its fingers.
+/// The lever follows from the points and normals of the contacts. `Δ` is the displacement of the joint since
+/// all fingers touched, without its component along the closing motion; the stiffness `p` thus keeps
+/// independent joints from moving sideways together with the object. If a finger loses contact, the gripper
+/// closes at its closing rate again.
 #[derive(Clone, Debug)]
 pub struct GripForce {
     /// Desired mean of the normal forces of all fingers, N.
@@ -41,8 +41,8 @@ pub struct GripForce {
 }
 
 impl GripForce {
-    /// Creates a law with a desired force, N, a closing rate, rad/s (m/s), and a damping, N m s/rad (N s/m). It
-    /// has a ramp of 0.5 s and an integral gain of 5 1/s, but neither stiffness nor effort limits.
+    /// Creates a law with a desired force, N, a closing rate, rad/s (m/s), and a damping, N m s/rad (N s/m).
+    /// It has a ramp of 0.5 s and an integral gain of 5 1/s, but neither stiffness nor effort limits.
     pub fn new(force: f64, closing_rate: f64, damping: f64) -> Self {
         Self {
             force,
@@ -59,7 +59,8 @@ impl GripForce {
     ///
     /// # Errors
     /// [`ControlError`] if the number of values is neither 1 nor `count`, the force or a damping is not
-    /// positive, a closing rate is zero, or another value is negative, too large or not finite.
+    /// positive, a closing rate is zero, or another value is negative, too large or not finite. Effort limits
+    /// may be infinite.
     pub fn check(&self, count: usize) -> Result<(), ControlError> {
         for (name, value) in [("force", self.force), ("ramp", self.ramp), ("integral", self.integral)] {
             check_numbers(name, &[value])?;
@@ -96,15 +97,16 @@ impl GripForce {
     }
 
     /// Updates the desired force and the integral `dt` seconds after the last control tick, and writes the
-    /// efforts of the group to `tau`, which initially holds the efforts of damping and stiffness. `levers` are
-    /// the levers of the joints, and `normal` is the mean normal force, N.
+    /// efforts of the group to `tau`, N m (N), which initially holds the efforts of damping and stiffness.
+    /// `levers` contains the lever of each joint, m (1), and `normal` is the mean normal force, N.
     fn squeeze(&self, memory: &mut GripMemory, (normal, dt): (f64, f64), levers: &[f64], tau: &mut [f64]) {
         let rise = if self.ramp > dt { self.force * dt / self.ramp } else { self.force };
         memory.reference = (memory.reference + rise).min(self.force);
         let change = self.integral * (memory.reference - normal) * dt;
         let command = memory.reference + memory.integral;
         let limits = |place: usize| self.effort_limit.at(place);
-        // the integral stops growing when the effort of a joint reaches its limit; the fingers never pull
+        // the integral stops growing when the effort of a joint reaches its limit; the sum of desired force
+        // and integral is never negative
         let room = |place: usize| {
             let (before, growth) = (tau[place] + levers[place] * command, levers[place] * change);
             let effort = before + growth;
@@ -120,8 +122,9 @@ impl GripForce {
         }
     }
 
-    /// Returns the projection of the displacements of the joints since all fingers touched on the closing
-    /// motion, `(r · Δ)/(r · r)`, s.
+    /// Returns the component of a joint displacement `δ` along the closing motion, `(r · δ)/(r · r)`, s:
+    /// multiplied by the closing rates `r`, it is the projection of `δ` onto the closing motion.
+    /// `displacement` returns `δ` for each of the `joints` joints, rad (m).
     fn along_closing(&self, displacement: impl Fn(usize) -> f64, joints: usize) -> f64 {
         let rate = |place: usize| self.closing_rate.at(place);
         let sum = |of: &dyn Fn(usize) -> f64| (0..joints).map(of).sum::<f64>();

@@ -1,15 +1,15 @@
-//! State of a grip between control ticks.
+//! State of a grip-force law between control ticks.
 
 use serde::{Deserialize, Serialize};
 
-/// State of a grip between control ticks.
+/// State of a grip-force law between control ticks.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct GripMemory {
-    /// True while all fingers touch.
+    /// True while all fingers touch the object.
     pub(super) is_closed: bool,
     /// Current desired force `F`, N.
     pub(super) reference: f64,
-    /// Integral of the force error times the gain, N.
+    /// Integral of the force error over time, multiplied by the gain `i`, N.
     pub(super) integral: f64,
     /// Positions of the joints of the group when all fingers touched, rad (m).
     pub(super) held: Vec<f64>,
@@ -26,7 +26,7 @@ impl GripMemory {
         self.held.len()
     }
 
-    /// Resets the state to that of a gripper that closes.
+    /// Resets the state to that of a gripper whose fingers do not all touch the object.
     pub(super) fn release(&mut self) {
         (self.is_closed, self.reference, self.integral) = (false, 0.0, 0.0);
     }

@@ -15,8 +15,8 @@ use crate::spatial::{cholesky_factor, cholesky_solve, dot};
 /// `y = M*_EE⁻¹ (τ_E − l_E)`, so that a task `ẍ = J q̈ + d` with the Jacobian `J` depends only on `A`:
 /// `ẍ = J' q̈_A + d + J_E y` with `J' = J_A − J_E G`. The set `A` consists of the joints `C`, whose
 /// accelerations are commanded by joint laws, and the joints `T`, which the tasks drive. A single damped
-/// pseudo-inverse of all task rows gives `q̈_T = J'_T⁺ (p̈r − d − J_E y − J'_C q̈_C) − N k q̇_T − κ D q̇_T`, so
-/// that each task accounts for the reactions to all others. Joints held by friction belong to neither set;
+/// pseudo-inverse of all task rows gives `q̈_T = J'_T⁺ (p̈r − d − J_E y − J'_C q̈_C) − N k q̇_T − κ D q̇_T`,
+/// so that each task accounts for the reactions to all others. Joints held by friction belong to neither set;
 /// their acceleration is zero. For a single task on all joints the solution equals that of
 /// [`computed_torque`](super::computed_torque).
 ///

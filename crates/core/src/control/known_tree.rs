@@ -82,8 +82,8 @@ impl KnownTree {
     /// Writes the inertia, bias and external forces of the reduced model of the robot's own joints `O` to
     /// `out`. The other joints `P` have no motor torques, so that their accelerations are
     /// `q̈_P = M_PP⁻¹ (Q_P − c_P − M_PO q̈_O)`. `M`, `c` and `Q` denote `M*`, `c*` and `Q*` of the tree
-    /// ([`FreeFloating`]); `Q_P` includes the torques of the springs of the joints `P`; those of the joints `O`
-    /// are not included.
+    /// ([`FreeFloating`]); `Q_P` includes the torques of the springs of the joints `P`; those of the joints
+    /// `O` are not included.
     ///
     /// `M' = M_OO − M_OP M_PP⁻¹ M_PO`,  `c' = c_O − M_OP M_PP⁻¹ c_P`,  `Q' = Q_O − M_OP M_PP⁻¹ Q_P`
     pub(super) fn reduce<S: Scalar>(&mut self, out: &mut FreeFloating<S>) {
@@ -144,21 +144,22 @@ impl KnownTree {
         out.pose.pos_w = full.pose.pos_w.map(|x| S::of(*x));
     }
 
-    /// Returns the drift `d` of the frame of the last [`KnownTree::reduce_frame`] in the tree without its loops.
+    /// Returns the drift `d`, m/s² and rad/s² in W axes, of the frame of the last [`KnownTree::reduce_frame`]
+    /// in the tree without its loops.
     pub(super) fn drift(&self) -> Motion<f64> {
         self.full.drift
     }
 
-    /// Adds a task of the frame of the last [`KnownTree::reduce_frame`] to the solver for closed loops, with the
-    /// acceleration `p̈r − d` and the damping threshold `λ₀`.
+    /// Adds a task of the frame of the last [`KnownTree::reduce_frame`] to the solver for closed loops, with
+    /// the acceleration `p̈r − d`, m/s² and rad/s², and the damping threshold `λ₀`.
     pub(super) fn add_task(&mut self, acceleration: [f64; ROWS], damping: f64) {
         if let Some(looped) = &mut self.looped {
             looped.dynamics.add_task(&self.full.jacobian, acceleration, damping);
         }
     }
 
-    /// Computes the Jacobian of the frame of the last [`KnownTree::reduce_frame`] with respect to the `driven`
-    /// joints (indices in the robot) while the loops of the tree are closed; see
+    /// Computes the Jacobian of the frame of the last [`KnownTree::reduce_frame`] with respect to the
+    /// `driven` joints (indices in the robot) while the loops of the tree are closed; see
     /// [`LoopedDynamics::driven_jacobian`](super::looped_dynamics::LoopedDynamics::driven_jacobian).
     pub(super) fn driven_jacobian(&mut self, driven: &[usize], out: &mut [f64]) {
         if let Some(looped) = &mut self.looped {

@@ -13,7 +13,8 @@ use crate::spatial::{ArticulatedInertia, Force, Motion, Real};
 /// Computes the generalized acceleration `a = M⁻¹ (τ − c + Σ Jᵀ F)` under generalized forces `τ`, bias forces
 /// `c` and external wrenches `F` on frames with the Jacobians `J`.
 ///
-/// `q`: `(nq,)`; `v`, `tau`, `a` (out): `(nv,)`; `tau[..6]` is a wrench on the base in base axes, N and N m.
+/// `q`: `(nq,)`; `v`, `tau`, `a` (out): `(nv,)`; `tau[..6]` is a wrench on the base, about its origin in base
+/// axes, N and N m.
 ///
 /// The bias accelerations for `q̈ = 0` are computed first, as in inverse dynamics. The recursion then solves
 /// for the deviation from these accelerations, so that each articulated inertia is multiplied only once. If a
@@ -161,7 +162,7 @@ fn kernel<S: Real>(
 }
 
 /// Returns `IA` and `pA` of a body: `I` and `I a + v ×* I v − F` of the body itself plus the sums over its
-/// children, which the argument contains.
+/// children, which the second argument contains.
 #[inline(always)]
 fn add_body<S: Real>(
     body: &BodyData<S>,

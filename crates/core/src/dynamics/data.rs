@@ -37,8 +37,8 @@ pub struct BodyData<S> {
     /// Difference between the acceleration and the bias acceleration for `q̈ = 0`, m/s² and rad/s². Set by
     /// ABA for the base and at forks.
     pub delta_acceleration: Motion<S>,
-    /// Force through the joint (RNEA), `I S` (CRBA and `free_floating`), or the articulated bias force `pA`
-    /// of a body with a locked joint (ABA).
+    /// Force through the joint (RNEA), `I^c S` with the composite inertia `I^c` (CRBA and `free_floating`),
+    /// or the articulated bias force `pA` of the base and of bodies with a locked joint (ABA).
     pub force: Force<S>,
     /// Sum of the rigid inertias of subtrees, stored by CRBA and `free_floating` at forks as in
     /// `subtree_external`. For the base, `free_floating` stores the inertia of the whole robot.
@@ -53,8 +53,8 @@ pub struct BodyData<S> {
     /// `u = τ − Sᵀ pA`, the joint effort minus the component of the articulated bias force along the joint, N
     /// m or N. Set by ABA.
     pub joint_bias: S,
-    /// Constraint torque (force) `λ` that keeps a locked joint from accelerating, N m (N). Set by ABA for
-    /// locked joints.
+    /// Constraint torque (force) `λ` that keeps the acceleration of a locked joint at its given value, or at
+    /// zero, N m (N). Set by forward dynamics for locked joints.
     pub holding_torque: S,
 }
 

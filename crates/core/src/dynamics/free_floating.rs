@@ -15,7 +15,8 @@ use crate::spatial::{Force, InverseInertia, Mat3, Motion, Real, SpatialInertia, 
 
 /// Reduced equations `M* q̈ + c* = τ + Q*` and task acceleration `ẍ = Jg q̈ + d` of one frame.
 ///
-/// The equations are exact for any momentum and any external wrench.
+/// The equations are exact for any momentum and any external wrench. After [`base_relative_frame`], the
+/// results for the frame are relative to the base, in base axes, instead of in W.
 ///
 /// Symbols: `M = [[Mbb, Mbm], [Mbmᵀ, Mmm]]`, bias `[c_b; c_m]`, frame Jacobian `[Jb Jm]` and generalized
 /// external forces `Q = [Qb; Qm]`; matrices are row major; the rows of frame Jacobians are in W axes, linear

@@ -68,8 +68,8 @@ pub(crate) fn center_of_mass_b<S: Real>(data: &Data<S>) -> Vec3<S> {
     moment * (S::of(1.0) / mass)
 }
 
-/// Returns the kinetic energy `½ Σ vᵀ I v + ½ Σ rotor q̇²` in W, J. Requires up-to-date kinematics
-/// ([`kinematics`](super::kinematics)) in `data`.
+/// Returns the kinetic energy `½ Σ vᵀ I v + ½ Σ rotor q̇²`, J, of the motion in W. Requires up-to-date
+/// kinematics ([`kinematics`](super::kinematics)) in `data`.
 pub fn kinetic_energy<S: Real>(model: &Model, data: &Data<S>, v: &[S]) -> S {
     S::enter(
         #[inline(always)]

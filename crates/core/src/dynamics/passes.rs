@@ -61,7 +61,7 @@ pub(super) fn leaf_to_root<S: Real, T: Accumulated<S>>(
 /// Quantity that is summed over the children of a body. Where a tree forks, the sum is stored in
 /// [`BodyData`].
 pub(super) trait Accumulated<S>: Copy {
-    /// Returns the value of a body without children.
+    /// Returns the zero value, which is the sum for a body without children.
     fn zero() -> Self;
     /// Returns the sum of two values.
     fn plus(self, other: Self) -> Self;

@@ -43,8 +43,8 @@ impl<const N: usize> PiecewiseChebyshev<N> {
         (series, (2.0 * (position - index as f64) - 1.0).clamp(-1.0, 1.0))
     }
 
-    /// Returns the value of the interpolated function at `t`, s; beyond the intervals, at the nearest end.
-    /// `function` must be the same in all calls.
+    /// Returns the value of the interpolated function at `t`, s; for a time outside the intervals, its
+    /// value at their nearest end. `function` must be the same in all calls.
     pub(super) fn value(&self, t: f64, function: impl Fn(f64) -> Vector3<f64>) -> Vector3<f64> {
         let (series, x) = self.series_at(t, function);
         // Clenshaw's recursion: b_k = c_k + 2x b_{k+1} - b_{k+2},  f = c_0 + x b_1 - b_2

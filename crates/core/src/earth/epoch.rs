@@ -31,10 +31,11 @@ pub struct Epoch {
 }
 
 impl Epoch {
-    /// Parses a text such as `2024-03-01T12:00:00 UTC`, which consists of date, time and time scale. The time
-    /// scale is UTC (or `Z`), TAI, TT or TDB.
+    /// Parses a text such as `2024-03-01T12:00:00 UTC`, which consists of a date, a time of day and a time
+    /// scale. The time scale is UTC (or `Z`), TAI, TT or TDB.
     ///
-    /// An instant in a leap second is written with 60 seconds.
+    /// The seconds may be omitted, or have up to nine decimals. An instant in a leap second is written
+    /// with 60 seconds.
     ///
     /// # Errors
     /// [`EarthError::Epoch`] for any other text and for years outside 1900 to 2099;
@@ -94,7 +95,8 @@ impl Epoch {
         (self.tai as i128 - earlier.tai as i128) as f64 * 1e-9
     }
 
-    /// Returns the time from 2000-01-01T12:00:00 TAI as whole days and a fraction of a day of TAI.
+    /// Returns the time from 2000-01-01T12:00:00 TAI to this epoch, as whole days of TAI and a fraction of
+    /// a day.
     pub(super) fn tai_days(self) -> (f64, f64) {
         (self.tai.div_euclid(DAY_NS) as f64, self.tai.rem_euclid(DAY_NS) as f64 / DAY_NS as f64)
     }
@@ -183,8 +185,8 @@ fn without_scale(text: &str) -> String {
     fault.to_owned()
 }
 
-/// Returns a description of the first field of `[year, month, day, hour, minute, second]` that is out of range;
-/// `None` if all are valid.
+/// Returns a message about the first field of `[year, month, day, hour, minute, second]` that is out of
+/// range; `None` if all are valid.
 fn fault([year, month, day, hour, minute, second]: [u16; 6]) -> Option<String> {
     let is_leap_year = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
     let days = match month {
@@ -208,7 +210,8 @@ fn fault([year, month, day, hour, minute, second]: [u16; 6]) -> Option<String> {
         .or_else(|| outside("second", second, 0, 60))
 }
 
-/// Splits a text into date and time, and time scale; `None` if it does not end with the name of a time scale.
+/// Separates the time scale at the end of a text from the date and time before it; returns `None` if the
+/// text does not end with the name of a time scale.
 fn split_scale(text: &str) -> Option<(&str, TimeScale)> {
     let scales = [
         ("Z", TimeScale::UTC),
@@ -220,8 +223,8 @@ fn split_scale(text: &str) -> Option<(&str, TimeScale)> {
     scales.iter().find_map(|(name, scale)| Some((text.strip_suffix(name)?.trim_end(), *scale)))
 }
 
-/// Parses year, month, day, hour, minute, second and nanoseconds of a text such as `2024-03-01T12:00:00`;
-/// returns `None` for a text of another form.
+/// Parses the year, month, day, hour, minute, second and nanoseconds of a text such as
+/// `2024-03-01T12:00:00`, in which the seconds may be omitted; returns `None` for a text of another form.
 fn numbers(text: &str) -> Option<([u16; 6], u32)> {
     let (whole, fraction) = text.split_once('.').unwrap_or((text, "0"));
     let (date, time) = whole.split_once(['T', ' '])?;

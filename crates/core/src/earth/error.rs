@@ -1,4 +1,4 @@
-//! Errors of epochs, Earth rotation, Sun and Moon.
+//! Errors of epochs, of the rotation of the Earth, and of the positions of the Sun and the Moon.
 
 use crate::number_text::{count, short, unlike};
 
@@ -44,9 +44,9 @@ pub enum EarthError {
         time: f64,
         /// Epoch of the run.
         epoch: String,
-        /// First known instant.
+        /// First instant at which the quantity is known.
         from: String,
-        /// Last known instant.
+        /// Last instant at which the quantity is known.
         to: String,
     },
     /// A time or another input is infinite or NaN.
@@ -107,9 +107,9 @@ pub enum EarthError {
         "the orbit has {orbit} axes, but the Earth has {run} axes; create the Earth with the axes of the orbit"
     )]
     OtherAxes {
-        /// Axes of the orbit.
+        /// Name of the axes of the orbit.
         orbit: &'static str,
-        /// Axes of the Earth.
+        /// Name of the axes of the Earth.
         run: &'static str,
     },
     /// A number in a segment of a SPICE kernel is implausible.

@@ -47,7 +47,7 @@ pub struct Earth {
 enum Rotation {
     /// Uniform rotation about z of `I`; `inertial` defines the axes of `I` for the positions of Sun and Moon.
     AboutZ { angle: f64, rate: f64, inertial: Option<Box<Orientation>> },
-    /// Rotation by IAU 2006 and the Earth-orientation parameters of the IERS.
+    /// Rotation according to IAU 2006/2000A, with the Earth-orientation parameters that the user supplies.
     Iau2006(Box<Orientation>),
 }
 
@@ -58,8 +58,8 @@ impl Earth {
         Self { rotation: Rotation::AboutZ { angle, rate, inertial: None }, sun_moon: None }
     }
 
-    /// Creates the Earth of IAU 2006/2000A in GCRF axes, with time zero at `epoch`. Its pole is accurate to 2
-    /// mas (6 cm on the ground).
+    /// Creates an Earth that rotates according to IAU 2006/2000A, with GCRF axes and time zero at `epoch`.
+    /// Its pole is accurate to 2 mas (6 cm on the ground).
     ///
     /// # Errors
     /// [`EarthError::Parameter`] and [`EarthError::ShortTable`] for invalid parameters;
@@ -219,7 +219,7 @@ impl Earth {
         check_span(what, t, sun_moon.epoch, sun_moon.span).map(|()| sun_moon)
     }
 
-    /// Returns the rotation from GCRF components to components in `I`.
+    /// Returns the rotation from GCRF components to components in `I` at simulation time `t`, s.
     fn rot_ig(&self, t: f64) -> Matrix3<f64> {
         match &self.rotation {
             Rotation::AboutZ { inertial, .. } => {

@@ -78,8 +78,8 @@ impl Orientation {
         (self.angle + ROTATION_RATE * (t + ut1_minus_tai), ROTATION_RATE * (1.0 + rate))
     }
 
-    /// Returns the rotation from components in `I` to components in `F`: `W R₃(θ - s) Mᵀ` from GCRF, `W
-    /// R₃(θ₈₂)` from TEME.
+    /// Returns the rotation from components in `I` to components in `F` at `t`, s: `W R₃(θ - s) Mᵀ` from
+    /// GCRF, `W R₃(θ₈₂)` from TEME.
     ///
     /// `W` is the polar motion, `θ` the Earth rotation angle and `s` the CIO locator; `R₃` rotates the axes
     /// about z. The rows of `R₃(-s) Mᵀ` are the celestial intermediate axes, with the pole `X, Y`. `θ₈₂` is
@@ -123,7 +123,7 @@ impl Orientation {
         polynomial(&TURNS, ut1 / 36_525.0) * TAU
     }
 
-    /// Returns the rotation from GCRF components to components in `I`.
+    /// Returns the rotation from GCRF components to components in `I` at `t`, s.
     pub(super) fn rot_ig(&self, t: f64) -> Matrix3<f64> {
         match self.axes {
             Axes::Gcrf => Matrix3::identity(),
@@ -135,7 +135,7 @@ impl Orientation {
         }
     }
 
-    /// Returns the angular velocity of the Earth relative to `I`, axes of `I`, rad/s.
+    /// Returns the angular velocity of the Earth relative to `I` at `t`, s, axes of `I`, rad/s.
     ///
     /// `ω = θ̇ p + p × ṗ` with the pole `p`, about which the celestial intermediate origin does not rotate.
     /// The rate of polar motion, below 1e-12 rad/s, is neglected.
@@ -161,8 +161,8 @@ impl PartialEq for Orientation {
     }
 }
 
-/// Returns the rotation from GCRF to the equator of the pole `X, Y`, which is `Mᵀ` of the IERS Conventions
-/// (2010), eq. 5.10, with `a = 1/(1 + Z)`.
+/// Returns the rotation from GCRF to the axes whose z axis is the pole `X, Y` and whose x and y axes lie
+/// in the equator: `Mᵀ` of the IERS Conventions (2010), eq. 5.10, with `a = 1/(1 + Z)`.
 fn equator(x: f64, y: f64) -> Matrix3<f64> {
     let z = (1.0 - x * x - y * y).sqrt();
     let a = 1.0 / (1.0 + z);

@@ -142,9 +142,11 @@ fn around(rows: &[Row], t: f64) -> (&Row, &Row, f64) {
     (a, b, ((t - a.time) / (b.time - a.time)).clamp(0.0, 1.0))
 }
 
-/// Returns the largest accepted |UT1 - UTC|, s, which is the bound that leap seconds guarantee.
+/// Returns the largest accepted |UT1 - UTC|, s, at a modified Julian date: from 1972 to 2034, 0.9 s, which
+/// leap seconds guarantee; otherwise 60 s.
 ///
-/// Before 1972, the value is UT1 - TAI, which leap seconds do not limit; by 2035 the bound will be raised.
+/// Before 1972, the value is UT1 - TAI, which leap seconds do not limit; by 2035, the limit of |UT1 - UTC|
+/// will be raised.
 ///
 /// Source: General Conference on Weights and Measures, 27th meeting (2022), resolution 4.
 fn largest_ut1(mjd: f64) -> f64 {

@@ -11,7 +11,8 @@ impl EarthParameters {
     /// Reads a table in the IERS format `finals2000A` or `eopc04`, or as CSV with the header
     /// `mjd,x_arcsec,y_arcsec,ut1_minus_utc_s`.
     ///
-    /// A `finals2000A` table ends before the first row without polar motion or UT1.
+    /// Blank lines and lines that begin with `#` are ignored. A `finals2000A` table ends before the first
+    /// row without polar motion or UT1.
     ///
     /// # Errors
     /// [`EarthError::Table`], with the number of the line, for an empty file, another CSV header or a row
@@ -58,7 +59,8 @@ impl EarthParameters {
     }
 }
 
-/// Result of parsing a row: `None` for a row without values.
+/// Result of parsing a row: `Ok(None)` for a row without values, and `Err` for a row that cannot be
+/// parsed.
 type ParsedRow = Result<Option<EarthParameterRow>, ()>;
 
 fn number(text: &str) -> Result<f64, ()> {
@@ -77,8 +79,8 @@ fn csv_row(line: &str) -> ParsedRow {
     }
 }
 
-/// Parses a row of `finals2000A`, with the MJD in columns 8-15, polar motion in 19-27 and 38-46, and
-/// `UT1 - UTC` in 59-68.
+/// Parses a row of `finals2000A`, with the MJD in columns 8-15, the polar motion x and y (arcsec) in 19-27
+/// and 38-46, and UT1 - UTC (s) in 59-68.
 fn finals_row(line: &str) -> ParsedRow {
     let part = |from: usize, to: usize| line.get(from - 1..to.min(line.len())).unwrap_or("");
     let (x, y, ut1) = (part(19, 27), part(38, 46), part(59, 68));
@@ -88,8 +90,8 @@ fn finals_row(line: &str) -> ParsedRow {
     row(part(8, 15), x, y, ut1)
 }
 
-/// Parses a row of `eopc04`: year, month, day, hour (in newer files), MJD, polar motion, UT1 - UTC and
-/// further columns.
+/// Parses a row of `eopc04`: year, month, day, hour (in newer files), MJD, polar motion x and y (arcsec),
+/// UT1 - UTC (s), and further columns.
 fn c04_row(line: &str) -> ParsedRow {
     let parts: Vec<_> = line.split_whitespace().collect();
     let has_hour = parts.get(3).and_then(|hour| hour.parse::<f64>().ok()).is_some_and(|hour| hour < 24.0);

@@ -23,7 +23,8 @@ pub struct SpiceSegment {
     pub coefficients: Vec<f64>,
 }
 
-/// Positions of the Sun and the Moon from the Earth's centre, GCRF axes. Each is the sum of several segments.
+/// Positions of the Sun and the Moon from the Earth's centre, GCRF axes. Each position is the sum of the
+/// positions in one or more segments.
 ///
 /// TT is used in place of TDB. They differ by less than 2 ms, during which the Moon moves by 2 m and the Sun
 /// by 60 m.
@@ -34,11 +35,13 @@ pub struct SpiceKernel {
 }
 
 impl SpiceKernel {
-    /// Creates the kernel from the chains of segments that lead from the Earth to the Sun and to the Moon.
+    /// Creates the kernel from the segments whose positions, with their signs, add up to those of the Sun
+    /// and of the Moon from the Earth's centre.
     ///
     /// # Errors
-    /// [`EarthError::SegmentLength`] for a segment without complete intervals, [`EarthError::NotFinite`], and
-    /// [`EarthError::Segment`] for implausible numbers, which could make positions overflow.
+    /// [`EarthError::SegmentLength`] for a segment without complete intervals, [`EarthError::NotFinite`]
+    /// for an infinite number or NaN, and [`EarthError::Segment`] for implausible numbers, which could
+    /// make positions overflow.
     pub fn new(sun: Vec<SpiceSegment>, moon: Vec<SpiceSegment>) -> Result<Self, EarthError> {
         for segment in sun.iter().chain(&moon) {
             let (got, size) = (segment.coefficients.len(), segment.count.saturating_mul(3));

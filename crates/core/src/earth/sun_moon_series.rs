@@ -18,8 +18,8 @@ fn all_arguments(t: f64) -> [f64; 8] {
     [l, l_sun, f, d, omega, venus, mars, jupiter]
 }
 
-/// Returns the geometric position of the Sun from the Earth's centre, GCRF axes, m, without light time or
-/// aberration.
+/// Returns the geometric position of the Sun from the Earth's centre, GCRF axes, m, without correction for
+/// light time or aberration.
 ///
 /// `t` is in Julian centuries of TT from J2000.0.
 pub(super) fn sun(t: f64) -> Vector3<f64> {
@@ -29,7 +29,8 @@ pub(super) fn sun(t: f64) -> Vector3<f64> {
     from_ecliptic(t, x[2] - x[3] + x[4] + longitude * ARC_SECOND, latitude * ARC_SECOND, distance * 1e3)
 }
 
-/// Returns the geometric position of the Moon from the Earth's centre; axes and units as for [`sun`].
+/// Returns the geometric position of the Moon from the Earth's centre, GCRF axes, m, without correction
+/// for light time or aberration, at `t`, Julian centuries of TT from J2000.0.
 pub(super) fn moon(t: f64) -> Vector3<f64> {
     let x = all_arguments(t);
     let [longitude, latitude, distance] =

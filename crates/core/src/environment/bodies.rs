@@ -109,7 +109,7 @@ impl Bodies {
         moment * (1.0 / mass)
     }
 
-    /// Returns the bodies of a system in groups with one body per lane of `S`.
+    /// Returns the bodies of a system in groups that have one body per lane of `S`.
     #[inline(always)]
     pub(super) fn groups<S: Real>(&self, system: SystemRows) -> impl Iterator<Item = LaneGroup<'_>> {
         let SystemRows { number, first, count } = system;

@@ -14,7 +14,7 @@ pub struct BodyState {
     pub inertia: Matrix3<f64>,
     /// Centre of mass in `W`, m.
     pub com: Vector3<f64>,
-    /// Rotation from body axes (the axes of its [`Node`](crate::model::Node)) to `W`.
+    /// Rotation from body axes, which are those of the body's [`Node`](crate::model::Node), to `W`.
     pub rot_wk: Matrix3<f64>,
     /// Origin of the body axes in `W`, m.
     pub origin: Vector3<f64>,
@@ -122,7 +122,7 @@ impl LaneGroup<'_> {
         self.block.motion.rot_wk.map(self.load())
     }
 
-    /// Returns the velocities of the centres of mass, m/s, and the angular velocities, rad/s.
+    /// Returns the velocities of the centres of mass, m/s, and the angular velocities, rad/s, in `W` axes.
     #[inline(always)]
     pub(super) fn velocities<S: Real>(&self) -> [Vec3<S>; 2] {
         let [linear, angular] = &self.block.motion.velocity;

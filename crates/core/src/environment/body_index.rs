@@ -8,7 +8,7 @@ use std::fmt;
 pub struct BodyIndex {
     /// Number of the system in the world, from 0. A run of only some of the systems keeps these numbers.
     pub system: usize,
-    /// Index of the body in its system, base first.
+    /// Index of the body in its system; the base has the index 0.
     pub body: usize,
 }
 

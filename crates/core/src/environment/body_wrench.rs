@@ -1,4 +1,4 @@
-//! Effect that applies a constant wrench, fixed in a body, during an interval.
+//! Effect that applies a wrench with constant components in body axes during an interval.
 
 use nalgebra::Vector3;
 
@@ -44,8 +44,8 @@ impl BodyWrench {
         Ok(Self { body: body.into(), force, torque, point: Vector3::zeros(), start, end })
     }
 
-    /// Creates an always active wrench on the first system: a force (N) at the origin of the frame with index
-    /// `frame` and a torque (N m), both in frame axes.
+    /// Creates a wrench on the first system that is always active: a force (N) at the origin of the frame
+    /// with index `frame` and a torque (N m), both in frame axes.
     ///
     /// # Errors
     /// [`EnvironmentError::NotFinite`] for a force or torque that is not finite;

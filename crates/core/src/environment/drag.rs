@@ -16,12 +16,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Effect that applies drag forces and torques to every body with a surface.
 ///
 /// The force on a face with area `A` and outward normal `n` is `F = -½ ρ C_D A (n·u)₊ u` at the centroid,
-/// where `ρ` is the density, `C_D` the drag coefficient and `x₊ = max(x, 0)`. The force on a cannonball is `F
-/// = -½ ρ C_D A |u| u` at the centre of mass. `u = v + ω × c - ω⊕ × r` is the velocity of this point relative
-/// to an atmosphere that rotates with the Earth, at the rate `ω⊕`; `v` is the velocity of the centre of mass,
-/// `ω` the angular velocity of the body, `c` the position of the point from the centre of mass and `r` that
-/// from the Earth's centre. `u` is assumed to be uniform over a face, cylinder or sphere. Parts do not shadow
-/// each other.
+/// where `ρ` is the density, `C_D` the drag coefficient and `x₊ = max(x, 0)`. The force on a cannonball is
+/// `F = -½ ρ C_D A |u| u` at the centre of mass. `u = v + ω × c - ω⊕ × r` is the velocity of this point
+/// relative to an atmosphere that rotates with the Earth, at the rate `ω⊕`; `v` is the velocity of the
+/// centre of mass, `ω` the angular velocity of the body, `c` the position of the point relative to the
+/// centre of mass, and `r` its position relative to the Earth's centre. `u` is assumed to be uniform over
+/// a face, cylinder or sphere. Parts do not shadow each other.
 ///
 /// The density is computed at the last multiple of 1/8 s, at the point of a grid of 128 m that is nearest to
 /// the base of each system, and is extrapolated with the scale height up to 160 m from that point. The

@@ -29,7 +29,7 @@ use super::wrenches::Wrenches;
 /// }
 /// ```
 pub trait Effect: Send + Sync + std::fmt::Debug {
-    /// Returns the short name used in messages and for recorded columns.
+    /// Returns the short name of the effect, which messages and recorded columns use.
     fn name(&self) -> &str;
 
     /// Returns the simulation times, s, at which the effect is discontinuous. The integrator ends a step

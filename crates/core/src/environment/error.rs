@@ -112,7 +112,8 @@ pub enum EnvironmentError {
     },
 }
 
-/// Error of a user-defined effect. Clones refer to the same error object, and two values are equal if they do.
+/// Error of a user-defined effect. Clones refer to the same error object, and two values are equal if they
+/// refer to the same object.
 #[derive(Clone, Debug, thiserror::Error)]
 #[error("{0}")]
 pub struct UserError(pub Arc<dyn Error + Send + Sync>);

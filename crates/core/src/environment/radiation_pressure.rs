@@ -67,8 +67,8 @@ impl RadiationPressure {
         not_negative("flux", flux).and(planet_radius(earth_radius)).map(drop)
     }
 
-    /// Returns the direction and pressure of the light at `r`, with the Sun at `sun`; both positions are from
-    /// the Earth's centre, axes of `I`, m.
+    /// Returns the unit vector to the Sun and the radiation pressure, N/m², at `r`, with the Sun at `sun`;
+    /// both positions are from the Earth's centre, axes of `I`, m.
     fn light(&self, r: &Vector3<f64>, sun: &Vector3<f64>) -> Light<f64> {
         let to_sun = sun - r;
         let distance = to_sun.norm();
@@ -108,7 +108,7 @@ struct Light<S> {
 }
 
 impl<S: Real> Light<S> {
-    /// Gathers the light that reaches the body in each lane; `light(i)` returns that of lane `i`.
+    /// Combines the light that reaches the bodies, one body per lane; `light(i)` returns that of lane `i`.
     #[inline(always)]
     fn from_lanes(light: impl Fn(usize) -> Light<f64>) -> Self {
         Self { to_sun: Vec3::from_lanes(|i| light(i).to_sun), pressure: S::from_lanes(|i| light(i).pressure) }

@@ -25,8 +25,8 @@ pub struct Reference<'a> {
     pub in_free_fall: bool,
 }
 
-/// Cache of quantities that depend only on the instant and the reference. They are computed on first use and
-/// shared by stages and steps.
+/// Cache of quantities that depend only on the instant and the reference. They are computed on first use
+/// and shared by the stages and steps that evaluate this instant.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Ephemeris {
     sky: OnceCell<Sky>,
@@ -79,8 +79,8 @@ impl Scene<'_> {
 }
 
 impl<'a> Scene<'a> {
-    /// Creates a scene without orbit and Earth; `ephemeris` must belong to `time` and to the reference that
-    /// is set later.
+    /// Creates a scene without a reference orbit and without an Earth; `ephemeris` must belong to `time`
+    /// and to the reference that is set later.
     pub(crate) fn new(interval: (f64, f64), time: f64, bodies: &'a Bodies, ephemeris: &'a Ephemeris) -> Self {
         let local_fields = Default::default();
         Self { interval, time, reference: None, earth: None, bodies, ephemeris, local_fields }
@@ -202,7 +202,8 @@ pub(super) struct Planet<'a> {
 }
 
 impl Planet<'_> {
-    /// Returns an error if a body is below ground; `distance` is from the planet's centre, m.
+    /// Returns an error if a body of `group` is below ground; `distance` holds the bodies' distances from
+    /// the planet's centre, m.
     #[inline(always)]
     pub(super) fn check_group_above_ground<S: Real>(
         &self,

@@ -41,8 +41,8 @@ pub fn sunlit(r: &Vector3<f64>, sun: &Vector3<f64>, radius: f64) -> f64 {
     }
 }
 
-/// Returns the common area of two discs of radii `a` and `b` whose rims intersect; `c` is the distance of
-/// their centres.
+/// Returns the common area of two discs of radii `a` and `b` whose rims intersect; `c` is the distance
+/// between their centres.
 fn overlap(a: f64, b: f64, c: f64) -> f64 {
     // A = a² acos(x/a) + b² acos((c - x)/b) - c y,  x = (c² + a² - b²)/2c,  y = √(a² - x²)
     let x = (c * c + a * a - b * b) / (2.0 * c);

@@ -48,7 +48,7 @@ impl Column8 {
     }
 }
 
-/// Stores a vector per lane in three columns, starting at row `offset`.
+/// Stores vectors, one per lane, in consecutive rows of three columns, starting at row `offset`.
 #[inline(always)]
 pub(super) fn store<S: Real>(columns: &mut Vec3<Column8>, offset: usize, lanes: Vec3<S>) {
     columns.x.store(offset, lanes.x);

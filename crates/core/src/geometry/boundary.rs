@@ -7,11 +7,11 @@ use crate::spatial::Vec3;
 /// Nearest point of the boundary of a shape, in the axes of the shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoundaryPoint {
-    /// Distance, m; negative inside.
+    /// Distance from the given point to the boundary, m; negative inside the shape.
     pub distance: f64,
     /// Closest point of the boundary, m.
     pub point: Vec3<f64>,
-    /// Unit normal at this point, outward: the gradient of the distance.
+    /// Outward unit normal at this point, which is the gradient of the distance.
     pub normal: Vec3<f64>,
 }
 

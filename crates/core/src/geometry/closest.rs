@@ -1,4 +1,4 @@
-//! Distance between two shapes of any kind, with the method that fits the pair.
+//! Distance between two shapes of any kind, computed by a method that depends on the pair.
 
 use super::boundary::signed_distance;
 use super::convex;
@@ -58,7 +58,7 @@ pub(super) fn check_pose(shape: &Shape, pose: &Pose) -> Result<(), GeometryError
 /// Shape that is not a compound, with its pose in common axes.
 pub(super) type Piece<'a> = (&'a Shape, Pose);
 
-/// Returns the least distance, m, over the pieces of both shapes, and the two pieces.
+/// Returns the least distance, m, over all pairs of pieces of the two shapes, and the nearest pair.
 pub(super) fn nearest_pieces<'a>(
     a: &'a Shape,
     pose_a: &Pose,
@@ -111,7 +111,7 @@ fn single(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> Result<Proximit
     found.map(|proximity| proximity.in_common(pose_a)).ok_or_else(|| GeometryError::Unavailable(pair()))
 }
 
-/// Returns the rank of a kind of shape. In every method, the shape of lower rank is the first argument.
+/// Returns the rank of a kind of shape. The first argument of every method is the shape of lower rank.
 fn rank(shape: &Shape) -> usize {
     match shape {
         Shape::Sphere { .. } => 0,
@@ -126,8 +126,8 @@ fn rank(shape: &Shape) -> usize {
     }
 }
 
-/// Returns the distance between a sphere about the origin and `b`: the distance from the centre of the sphere
-/// to `b`, less the radius; `None` if `b` is a hull.
+/// Returns the distance between a sphere about the origin and `b`: the distance from the centre of the
+/// sphere to `b`, less the radius; `None` if `b` is a hull or a compound.
 fn sphere(radius: f64, b: &Shape, pose: &Pose) -> Option<Proximity> {
     let nearest = signed_distance(b, pose.to_shape(Vec3::zero()))?;
     let normal = pose.rot * -nearest.normal;

@@ -18,17 +18,19 @@ pub struct ContactPoint {
     pub point_b: Vec3<f64>,
     /// Depth of the overlap at this point, m; negative where the shapes are apart.
     pub depth: f64,
-    /// Part of the stiffness of the contact that acts at this point; the weights of a contact sum to 1.
+    /// Fraction of the stiffness of the contact that acts at this point; the weights of a contact sum to
+    /// 1.
     pub weight: f64,
     /// Change of the depth for a displacement of the second shape: m per m of translation and m per rad of
     /// rotation about the middle of the witness points.
     pub depth_gradient: Force<f64>,
-    /// Change of the weight for the same displacement, 1/m and 1/rad.
+    /// Change of the weight for the same displacements, per m of translation and per rad of rotation.
     pub weight_gradient: Force<f64>,
 }
 
 impl ContactPoint {
-    /// Returns a contact point whose two points are fixed to their shapes and whose weight is constant.
+    /// Returns a contact point whose gradients are those of points fixed to their shapes and of a constant
+    /// weight.
     pub(super) fn new(
         proximity: &Proximity,
         [point_a, point_b]: [Vec3<f64>; 2],
@@ -41,7 +43,7 @@ impl ContactPoint {
     }
 }
 
-/// Returns the witness points as a contact point.
+/// Returns the pair of witness points as a contact point with the given weight.
 pub(super) fn witness(proximity: &Proximity, weight: f64) -> ContactPoint {
     let Proximity { distance, point_a, point_b, .. } = *proximity;
     ContactPoint::new(proximity, [point_a, point_b], -distance, weight)

@@ -5,13 +5,13 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// Number of derivatives: with respect to translations along three axes, then to rotations about them.
 pub(super) const DIRECTIONS: usize = 6;
 
-/// Number of a geometric computation, with or without derivatives.
+/// Number in a geometric computation, with or without derivatives.
 pub(super) trait Number:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
-    /// Returns a number with these derivatives.
+    /// Returns a number with this value and, except for `f64`, with these derivatives.
     fn new(value: f64, slopes: [f64; DIRECTIONS]) -> Self;
-    /// Returns a constant.
+    /// Returns a constant, whose derivatives are zero.
     fn of(x: f64) -> Self {
         Self::new(x, [0.0; DIRECTIONS])
     }

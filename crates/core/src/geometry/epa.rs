@@ -6,7 +6,8 @@ use crate::spatial::Vec3;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// Difference between the bounds of the depth at which the iteration ends, relative to the size of the set.
+/// Difference between the upper and lower bounds of the depth at which the iteration ends, relative to the
+/// size of the set.
 const CONVERGED: f64 = 1e-10;
 
 /// Height of a point above a triangle below which the triangle is not visible from the point, relative to the

@@ -1,28 +1,28 @@
-//! Errors of shapes and distances.
+//! Errors of shapes and of the distances between them.
 
 use super::pose::Pose;
 use crate::number_text::{self, list, short};
 
-/// Two shapes, by the names of their kinds, and their poses.
+/// Names of the kinds of two shapes, and the poses of the shapes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PosedPair {
-    /// Kind of the first shape.
+    /// Kind of the first shape with its article, such as `a box`.
     pub a: &'static str,
     /// Pose of the first shape.
     pub pose_a: Pose,
-    /// Kind of the second shape.
+    /// Kind of the second shape with its article.
     pub b: &'static str,
     /// Pose of the second shape.
     pub pose_b: Pose,
 }
 
-/// Error of a shape or of a distance.
+/// Error of a shape or of the computation of a distance.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GeometryError {
     /// A length of a shape is not positive and finite.
     #[error("the {name} of {shape} is {got} m; it must be positive and finite", got = short(*got))]
     Length {
-        /// Kind of the shape, with its article.
+        /// Kind of the shape with its article, such as `a box`.
         shape: &'static str,
         /// Name of the length.
         name: &'static str,
@@ -47,7 +47,7 @@ pub enum GeometryError {
     /// The pose of a shape has a number that is not finite.
     #[error("the pose of {name} contains infinity or NaN; give a finite position and rotation")]
     Pose {
-        /// Kind of the shape, with its article.
+        /// Kind of the shape with its article, such as `a box`.
         name: &'static str,
     },
     /// A link has no collision shape.
@@ -65,10 +65,11 @@ pub enum GeometryError {
     Collision {
         /// Name of the link.
         link: String,
-        /// Reason as text, with advice if there is any.
+        /// Reason, as text, with the suggested fix if there is one.
         cause: String,
     },
-    /// No distance is defined between two shapes.
+    /// The distance between two shapes is not available, because both are half-spaces, or because the
+    /// middle circle of a torus intersects the other shape.
     #[error("the distance between {} and {} is not available, because {}", .0.a, .0.b, unavailable(.0))]
     Unavailable(Box<PosedPair>),
     /// The distance between two shapes was not found.
@@ -85,7 +86,7 @@ pub enum GeometryError {
     },
 }
 
-/// Returns why two shapes have no distance.
+/// Returns the reason why the distance between two shapes is not available, with the suggested fix.
 fn unavailable(pair: &PosedPair) -> &'static str {
     match (pair.a, pair.b) {
         ("a half-space", "a half-space") => "both are unbounded; replace one of them by a box",

@@ -8,15 +8,15 @@ use super::polygon::{Point, clip};
 use crate::spatial::Vec3;
 use std::f64::consts::TAU;
 
-/// Part of the perimeter of a patch that is added to the distance between two corners in the slope between
-/// them. Without it, the weight would jump where a corner splits into two.
+/// Fraction of the perimeter of a patch that is added to the distance between two corners to compute the
+/// slope between them. Without it, the weight would jump where a corner splits into two.
 const SPREAD: f64 = 0.01;
 
 /// Largest angle, rad, between two edges that count as one line, and largest distance, relative to the
 /// perimeter, of two corners that count as one.
 const SAME: f64 = 1e-7;
 
-/// Least ratio of the weight of a corner to the weight that follows from its angle.
+/// Smallest factor by which the weight that follows from the angle of a corner is multiplied.
 const LEAST: f64 = 0.1;
 
 /// Vector of numbers with or without derivatives.
@@ -116,8 +116,8 @@ pub(super) struct Patch<N> {
     pub(super) width: N,
 }
 
-/// Returns the common part of two faces; `None` without one, for two half-spaces, and for faces whose normals
-/// are almost the same.
+/// Returns the common part of two faces; `None` if there is none, if both are half-spaces, or if their
+/// normals are almost the same.
 pub(super) fn patch<N: Number>(a: &Facet<N>, b: &Facet<N>) -> Option<Patch<N>> {
     let along = unit(less(a.normal, b.normal))?;
     let cosine = dot(along, a.normal);
@@ -173,8 +173,8 @@ fn apart<N: Number>(p: Point<N>, q: Point<N>) -> N {
     (x * x + y * y).sqrt()
 }
 
-/// Returns a polygon without repeated corners and without corners between two edges in a line. Rounding
-/// errors determine the places of such corners.
+/// Returns a polygon without repeated corners and without corners between two collinear edges, whose
+/// positions rounding errors determine.
 fn simplified<N: Number>(mut corners: Vec<Point<N>>) -> Vec<Point<N>> {
     let perimeter = perimeter(&corners).value();
     let is_same = |p: Point<N>, q: Point<N>| apart(p, q).value() <= SAME * perimeter;
@@ -211,13 +211,13 @@ fn angle<N: Number>(before: Point<N>, p: Point<N>, after: Point<N>) -> N {
     change + N::of(s.atan2(c))
 }
 
-/// Returns weights of the corners of a convex polygon. They sum to 1, and the weighted mean of the corners
-/// is the centroid, unless the polygon is almost a line or a factor is raised to [`LEAST`].
+/// Returns the weights of the corners of a convex polygon. They sum to 1, and the weighted mean of the
+/// corners is the centroid, unless the polygon is almost a line or a factor is raised to [`LEAST`].
 ///
 /// They are `α_i/2π`, with the angle `α_i` by which the boundary turns at the corner `p_i`, times a factor
-/// that is linear in the position, `1 + b (p_i − p̄)`, with the mean `p̄ = Σ p_i α_i/2π` and the vector `b`
-/// that yields the centroid. A corner that splits into two passes its angle on to both, and a point on a
-/// straight edge has none.
+/// that is linear in the position, `1 + b (p_i − p̄)`, with the mean `p̄ = Σ p_i α_i/2π` and the vector
+/// `b` that yields the centroid. If a corner splits into two, the two share its angle; a point on a
+/// straight edge has the weight 0.
 fn by_angle<N: Number>(corners: &[Point<N>]) -> Vec<N> {
     let count = corners.len();
     let around = |i: usize| [corners[(i + count - 1) % count], corners[i], corners[(i + 1) % count]];

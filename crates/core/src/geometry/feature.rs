@@ -13,7 +13,7 @@ pub(super) const DISC_CORNERS: u32 = 8;
 /// face.
 const ON_FACE: f64 = 1e-9;
 
-/// Part of a surface.
+/// Part of the surface of a shape that faces a given direction.
 #[derive(Clone, Debug)]
 pub(super) enum Feature {
     /// Single point, such as the nearest point of a sphere.

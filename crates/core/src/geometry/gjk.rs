@@ -57,7 +57,7 @@ impl Cores<'_> {
         -self.corner(n).apart.dot(n)
     }
 
-    /// Returns the same shapes with the second one moved by `by`, m.
+    /// Returns the same shapes with the second one translated by the vector `by`, m.
     pub(super) fn moved(&self, by: Vec3<f64>) -> Self {
         Self { pose: Pose { pos: self.pose.pos + by, ..self.pose }, ..*self }
     }
@@ -65,9 +65,9 @@ impl Cores<'_> {
     /// Returns the nearest points of separated shapes; `None` if they touch or overlap. `start` is an
     /// approximate direction from the first shape to the second.
     ///
-    /// The iteration ends when the supporting planes confirm the distance to rounding, or when their
-    /// separation no longer increases. The distance alone is not a sufficient criterion, because it no longer
-    /// changes while the normal still turns by 1e-8 rad.
+    /// The iteration ends when the supporting planes confirm the distance to within rounding errors, or
+    /// when their separation no longer increases. The distance alone is not a sufficient criterion,
+    /// because it no longer changes while the normal still turns by 1e-8 rad.
     pub(super) fn nearest(&self, start: Vec3<f64>) -> Option<Nearest> {
         let first = self.corner(start);
         let mut simplex = Simplex::new(first);

@@ -7,16 +7,17 @@ use super::feature::Feature;
 use super::proximity::Proximity;
 use crate::spatial::{Force, Vec3};
 
-/// Height of a corner, relative to its distance from the witness points, below which it counts as deep as
-/// they are.
+/// Difference in height between a corner and a witness point, relative to their distance, below which both
+/// count as equally deep.
 const LEVEL: f64 = 1e-10;
 
 /// Sine of the angle between two normals below which they count as equal.
 const PARALLEL: f64 = 1e-9;
 
 /// Returns the contact points of two plane faces, discs or half-spaces; `None` for other features and for
-/// faces without a common part. The deepest corner has the depth of the shapes; the other depths differ from
-/// it as on the faces.
+/// faces without a common part. The depth of the deepest corner is that of the shapes, and the differences
+/// between the depths are those between the faces. If the common part is narrower than the depth, the
+/// witness points are added.
 pub(super) fn face_points(proximity: &Proximity, a: &Feature, b: &Feature) -> Option<Vec<ContactPoint>> {
     let flat = common::<f64>(proximity, a, b)?;
     let depth = -proximity.distance;
@@ -73,8 +74,9 @@ fn values(p: Vector<Dual>) -> Vec3<f64> {
     Vec3::new(p[0].value, p[1].value, p[2].value)
 }
 
-/// Returns the common part of two faces, relative to the middle of the witness points, with derivatives with
-/// respect to displacements of the second shape; `None` for other features and without a common part.
+/// Returns the common part of two faces, relative to the middle of the witness points, with derivatives
+/// with respect to displacements of the second shape; `None` for other features and for faces without a
+/// common part.
 fn common<N: Number>(proximity: &Proximity, a: &Feature, b: &Feature) -> Option<Patch<N>> {
     let normal = proximity.normal;
     let place_a = |p: Vec3<f64>| fixed(p - proximity.center());
@@ -109,8 +111,8 @@ fn moving<N: Number>(v: Vec3<f64>, is_point: bool) -> Vector<N> {
     ]
 }
 
-/// Returns the depth of the shapes, m, with its derivatives, which are those of the distance of the
-/// supporting planes at the witness points, with the opposite sign.
+/// Returns the depth of the shapes, m, with its derivatives, which are those of the distance between the
+/// supporting planes at the witness points with the opposite sign.
 ///
 /// On a face, the `deepest` corner replaces the witness point, because any point of an edge that lies flat on
 /// the face may be the witness point.

@@ -5,7 +5,7 @@ use super::error::GeometryError;
 use super::polytope::Polytope;
 use crate::spatial::Vec3;
 
-/// Thickness, relative to their extent, below which points count as lying in a plane.
+/// Thickness of a set of points, relative to its extent, below which the points count as lying in a plane.
 const FLAT: f64 = 1e-9;
 
 /// Height of a point above a face, relative to the extent of the points, below which the point counts as part
@@ -70,7 +70,7 @@ impl Hull {
         self.faces.iter().map(cone).sum()
     }
 
-    /// Returns the farthest vertex in the direction `d`.
+    /// Returns the vertex, m, that is farthest in the direction `d`.
     pub(super) fn farthest(&self, d: Vec3<f64>) -> Vec3<f64> {
         let mut best = self.vertices[0];
         let mut height = best.dot(d);
@@ -96,7 +96,8 @@ impl Hull {
         BoundingSphere { center, radius }
     }
 
-    /// Merges triangles in the same plane into faces and drops points that are not vertices.
+    /// Creates the hull of a polytope: merges triangles in the same plane into faces, and omits points
+    /// that are not vertices.
     fn from_polytope(polytope: &Polytope, tolerance: f64) -> Self {
         let mut is_taken: Vec<bool> =
             polytope.triangles.iter().map(|triangle| !triangle.is_alive || triangle.is_flat).collect();
@@ -141,8 +142,9 @@ fn spread(points: &[Vec3<f64>]) -> Option<([usize; 4], f64)> {
     (area > FLAT * extent * extent && thickness > FLAT * extent).then_some(([a, b, c, d], extent))
 }
 
-/// Adds the farthest points outside its faces to the tetrahedron `first` until no point is more than
-/// `tolerance`, m, outside. Returns `None` if rounding errors prevent this.
+/// Returns the polytope that results when the farthest points outside its faces are added to the
+/// tetrahedron `first` until no point is more than `tolerance`, m, outside; `None` if rounding errors
+/// prevent this.
 fn grown(points: &[Vec3<f64>], first: [usize; 4], tolerance: f64) -> Option<Polytope> {
     let mut polytope = Polytope::default();
     if !polytope.start(first.map(|i| points[i])) {
@@ -173,8 +175,8 @@ fn grown(points: &[Vec3<f64>], first: [usize; 4], tolerance: f64) -> Option<Poly
     Some(polytope)
 }
 
-/// Assigns each of the points `loose` (indices) to the first triangle, from index `first` on, outside of
-/// which it lies.
+/// Assigns each of the points `loose` (indices) to the first triangle, from index `first` on, that it lies
+/// outside of.
 fn assign(
     polytope: &Polytope,
     points: &[Vec3<f64>],
@@ -192,7 +194,8 @@ fn assign(
     }
 }
 
-/// Returns the indices of the corners of all triangles that are connected to `seed` and lie in its plane.
+/// Returns the indices of the corners of all triangles that are connected to `seed` and lie in its plane,
+/// and marks these triangles in `is_taken`.
 fn coplanar(polytope: &Polytope, seed: usize, tolerance: f64, is_taken: &mut [bool]) -> Vec<usize> {
     let mut group = vec![seed];
     let mut corners = polytope.triangles[seed].corners.to_vec();

@@ -7,7 +7,7 @@ use super::pose::Pose;
 use super::proximity::Proximity;
 use super::shape::Shape;
 
-/// Shapes with their bounding spheres.
+/// Set of shapes with their bounding spheres.
 #[derive(Clone, Debug, Default)]
 pub struct ShapeSet {
     shapes: Vec<(Shape, BoundingSphere)>,
@@ -47,7 +47,7 @@ impl ShapeSet {
     /// returns `None`. Pairs whose bounding spheres are farther apart than the nearest pair are skipped.
     ///
     /// # Errors
-    /// The error of [`closest`] for a pair.
+    /// The error of [`closest`] for the first pair whose distance cannot be computed.
     pub fn least_distance(
         &self,
         poses: &[Pose],

@@ -1,4 +1,4 @@
-//! Shape of a link from its `<collision>` elements.
+//! Creation of the collision shape of a link from its `<collision>` elements.
 
 use super::error::GeometryError;
 use super::hull::Hull;
@@ -15,7 +15,8 @@ use std::sync::Arc;
 pub struct LinkShape {
     /// Shape in link axes: a compound with one piece for each `<collision>` element.
     pub shape: Shape,
-    /// Defects of meshes, one message each. The convex hull of such a mesh is used nevertheless.
+    /// Warnings about defects of meshes, one line each; the convex hulls of these meshes are used
+    /// nevertheless.
     pub warnings: Vec<String>,
 }
 
@@ -59,11 +60,11 @@ fn pose(visual: &Visual) -> Pose {
     }
 }
 
-/// Returns the collision shape for a geometry that belongs to `owner`, such as `the link 'hand'`. Adds the
-/// defect of a mesh to `warnings`.
+/// Returns the collision shape for a geometry that belongs to `owner`, such as `the link 'hand'`. Adds a
+/// warning to `warnings` if a mesh has a defect.
 ///
 /// # Errors
-/// The reason, as text, why a mesh cannot be used.
+/// The reason, as text, why a mesh or the points of a hull cannot be used.
 pub fn shape_of(geometry: &Geometry, owner: &str, warnings: &mut Vec<String>) -> Result<Shape, String> {
     Ok(match geometry {
         Geometry::Box(edges) => Shape::Box { half_edges: edges.map(|edge| 0.5 * edge) },

@@ -63,7 +63,7 @@ pub(crate) enum Points {
     /// The pair of witness points, which is used if a shape is a sphere or if the shapes exert no force on each
     /// other.
     Witness,
-    /// Corners of the common part of two features.
+    /// Contact points computed from the features of the shapes that face each other.
     Many(Vec<ContactPoint>),
 }
 
@@ -77,7 +77,8 @@ impl Points {
         }
     }
 
-    /// Returns the same points, fixed to both shapes and with constant weights.
+    /// Returns the same points with the gradients of points that are fixed to both shapes and have
+    /// constant weights.
     pub(crate) fn fixed(mut self, proximity: &Proximity) -> Self {
         if let Self::Many(points) = &mut self {
             for point in points {

@@ -13,8 +13,8 @@ const STL_HEAD: usize = 84;
 /// Length of a triangle in a binary STL file, bytes.
 const STL_TRIANGLE: usize = 50;
 
-/// Reads the triangles of an STL or OBJ file, chosen by the file extension, or returns the reason why the
-/// file cannot be read.
+/// Reads the triangles of an STL or OBJ file, whose format is determined by the file extension, or returns
+/// the reason why the file cannot be read.
 pub(super) fn read_mesh(path: &Path) -> Result<Mesh, String> {
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
     if !matches!(ending.as_str(), "stl" | "obj") {

@@ -8,8 +8,8 @@ use super::projection::Projection;
 use super::proximity::Proximity;
 use crate::spatial::Vec3;
 
-/// Returns the contact points of two features. They are the witness points unless both features have an
-/// extent.
+/// Returns the contact points of two features. If a feature is a point or the features have no common
+/// part, these are the witness points.
 pub(super) fn contact_points(proximity: &Proximity, a: &Feature, b: &Feature) -> Vec<ContactPoint> {
     let is_plane = |feature: &Feature| matches!(feature, Feature::Face { .. } | Feature::Plane);
     if is_plane(a) && is_plane(b) {
@@ -28,13 +28,13 @@ pub(super) fn contact_points(proximity: &Proximity, a: &Feature, b: &Feature) ->
     found.unwrap_or_else(|| vec![witness(proximity, 1.0)])
 }
 
-/// Returns `(1 − s²)²`, and 0 from `s = 1` on.
+/// Returns `(1 − s²)²` for `s < 1`, and 0 otherwise.
 fn taper(s: f64) -> f64 {
     let left = (1.0 - s * s).max(0.0);
     if s < 1.0 { left * left } else { 0.0 }
 }
 
-/// Returns the contact points of a line and a face or a plane; `None` without a common part.
+/// Returns the contact points of a line and a face or a plane; `None` if they have no common part.
 fn overlap(plane: &Projection, proximity: &Proximity, a: &Feature, b: &Feature) -> Option<Vec<ContactPoint>> {
     let corners = match (plane.corners(a), plane.corners(b)) {
         (Some(a), Some(b)) if b.len() > 2 => clip(&a, &b),
@@ -72,9 +72,9 @@ fn length(corners: &[Point], i: usize) -> f64 {
     (q[0] - p[0]).hypot(q[1] - p[1])
 }
 
-/// Returns the weights of the corners of the common part of a line and a face from the depths at the corners,
-/// m. The weights sum to 1. They are those by length or area if the depths are equal; as the slope approaches
-/// [`TILT`], the weight passes to the deepest edge and corner.
+/// Returns the weights of the corners of the common part of a line and a face from the depths at the
+/// corners, m. The weights sum to 1. If the depths are equal, they are those of [`weights`]; as the slope
+/// approaches [`TILT`], the weight passes to the deepest edge and corner.
 fn tilted_weights(corners: &[Point], depths: &[f64]) -> Vec<f64> {
     let extent = extent(corners, |i| depths[i]);
     let band = TILT * extent;
@@ -102,8 +102,8 @@ fn tilted_weights(corners: &[Point], depths: &[f64]) -> Vec<f64> {
     by_area.iter().zip(&by_edge).map(blend).collect()
 }
 
-/// Returns the length of a patch, m, in the direction in which a linear depth changes most; 0 if the depth is
-/// constant.
+/// Returns the length of a patch, m, in the direction in which the depth changes most; 0 if the depth is
+/// constant. The depth is assumed to be a linear function of the position.
 fn extent(corners: &[Point], depth: impl Fn(usize) -> f64) -> f64 {
     // the gradient from the moments of the corners about their mean
     let count = corners.len() as f64;
@@ -131,8 +131,9 @@ fn extent(corners: &[Point], depth: impl Fn(usize) -> f64) -> f64 {
     high - low
 }
 
-/// Returns the contact points of two lines on round surfaces whose radii have the sum `radius`, m: the ends
-/// of their common part, in the mean direction of both, and the witness points; `None` without a common part.
+/// Returns the contact points of two lines on round surfaces whose radii have the sum `radius`, m: the
+/// ends of their common part along the mean direction of both, and the witness points, which receive the
+/// remaining weight; `None` if the lines have no common part.
 fn lines(
     plane: &Projection,
     proximity: &Proximity,

@@ -14,7 +14,7 @@ fn between<N: Number>(a: Point<N>, b: Point<N>, t: N) -> Point<N> {
 }
 
 /// Returns the intersection of a convex polygon, or of a segment of two corners, with a convex polygon.
-/// Both have their corners counterclockwise.
+/// The corners of both are in counterclockwise order.
 ///
 /// Source: Sutherland and Hodgman, Communications of the ACM 17(1), 1974.
 pub(super) fn clip<N: Number>(subject: &[Point<N>], window: &[Point<N>]) -> Vec<Point<N>> {
@@ -39,8 +39,8 @@ pub(super) fn clip<N: Number>(subject: &[Point<N>], window: &[Point<N>]) -> Vec<
     corners
 }
 
-/// Returns weights of the corners of a convex polygon or a segment. They sum to 1, and the weighted mean of
-/// the corners is the centroid.
+/// Returns the weights of the corners of a convex polygon or a segment. They sum to 1, and the weighted
+/// mean of the corners is the centroid.
 ///
 /// The polygon is divided into triangles with the centroid as a common corner. With the area `A_i` of the
 /// triangle from corner `i` to `i + 1` and the total area `A`, the weight is `w_i = (A_{i−1} + A_i)/2A`. For

@@ -1,4 +1,4 @@
-//! Convex polytope of triangles that grows by one vertex at a time.
+//! Convex polytope with triangular faces that grows by one vertex at a time.
 
 use crate::spatial::Vec3;
 
@@ -15,7 +15,7 @@ pub(super) struct Triangle {
     pub(super) offset: f64,
     /// False once the triangle has been replaced.
     pub(super) is_alive: bool,
-    /// True if the corners are collinear to rounding; the normal is then undefined.
+    /// True if the corners are collinear to within rounding errors; the normal is then set to zero.
     pub(super) is_flat: bool,
 }
 
@@ -27,7 +27,8 @@ pub(super) struct Polytope {
     visible: Vec<usize>,
 }
 
-/// Area of a triangle, relative to the squares of its edges, below which its normal is undefined.
+/// Sine of the angle between the two shorter edges of a triangle at or below which its normal is
+/// undefined.
 const FLAT: f64 = 1e-14;
 
 impl Polytope {
@@ -54,9 +55,10 @@ impl Polytope {
         face.normal.dot(point - self.points[face.corners[0]])
     }
 
-    /// Adds a point that is outside the triangle `seed`, and replaces all connected triangles of whose planes
-    /// the point is more than `tolerance`, m, outside. Returns the index of the first new triangle, or `None`
-    /// if rounding has made the boundary of the replaced triangles ambiguous.
+    /// Adds a point that is outside the triangle `seed`. This triangle and all triangles connected to it
+    /// are replaced if the point is more than `tolerance`, m, above their planes. Returns the index of the
+    /// first new triangle, or `None` if rounding has made the boundary of the replaced triangles
+    /// ambiguous.
     pub(super) fn add(&mut self, point: Vec3<f64>, seed: usize, tolerance: f64) -> Option<usize> {
         let apex = self.points.len();
         self.points.push(point);
@@ -94,7 +96,8 @@ impl Polytope {
         Some(first)
     }
 
-    /// Connects the new triangles, from `first` on, around their common vertex.
+    /// Connects the new triangles, from `first` on, around their common vertex. Returns `None` if their
+    /// order is ambiguous or there are fewer than three.
     fn join(&mut self, first: usize) -> Option<()> {
         for index in first..self.triangles.len() {
             let to = self.triangles[index].corners[1];

@@ -1,4 +1,5 @@
-//! Signed distances in the half plane of a shape of revolution: `ρ ≥ 0` from the axis, and `z`.
+//! Signed distances to the profile of a shape of revolution, in the half plane with the distance `ρ` from
+//! the axis and the coordinate `z`.
 
 /// Point of the half plane, `(ρ, z)`, m.
 type Point = [f64; 2];
@@ -6,8 +7,9 @@ type Point = [f64; 2];
 /// Signed distance, m, closest point of the boundary, and outward unit normal at this point.
 pub(super) type Nearest2 = (f64, Point, Point);
 
-/// Returns the nearest point of a convex profile to `p`. `corners` are the vertices from one end of the axis to the
-/// other; consecutive ones are joined by straight lines, along which the shape is on the left side.
+/// Returns the nearest point of a convex profile to `p`. `corners` are the vertices from one end of the
+/// shape's axis to the other; consecutive ones are joined by straight lines, along which the shape is on
+/// the left side.
 pub(super) fn nearest(corners: &[Point], p: Point) -> Nearest2 {
     let mut inside = (f64::NEG_INFINITY, p, [0.0, 0.0]);
     let mut outside = (f64::INFINITY, p, [0.0, 0.0]);

@@ -6,8 +6,8 @@ use super::proximity::Proximity;
 use super::segment::perpendicular;
 use crate::spatial::Vec3;
 
-/// Smallest cosine of the angle between the normal of a contact and the normal of a face that can be part of
-/// the contact. For a line, the smallest sine of its angle with the normal of the contact.
+/// Number at or below which a feature is not part of a contact: the cosine of the angle between the normal
+/// of a face and the normal of the contact, or the sine of the angle between a line and this normal.
 const STEEP: f64 = 0.1;
 
 /// Plane through the first witness point and perpendicular to the normal.
@@ -63,8 +63,8 @@ impl Projection {
         }
     }
 
-    /// Returns the height, m, of a feature along the normal above the point `p` of the plane. For a point or
-    /// a half-space, returns `other`.
+    /// Returns the height, m, along the normal, of a feature above the point `p` of the plane. For a point
+    /// or a half-space, returns `other`.
     pub(super) fn height(&self, feature: &Feature, p: Point, other: f64) -> f64 {
         let foot = self.lift(p, 0.0);
         match feature {

@@ -25,12 +25,13 @@ impl Proximity {
         Self { point_a: self.point_b, point_b: self.point_a, normal: -self.normal, ..self }
     }
 
-    /// Returns the middle of the witness points, m.
+    /// Returns the midpoint between the witness points, m.
     pub(crate) fn center(&self) -> Vec3<f64> {
         (self.point_a + self.point_b) * 0.5
     }
 
-    /// Returns the same distance in common axes, given the pose of the present axes.
+    /// Returns the same distance with the points and the normal converted from axes with the pose `axes`
+    /// to common axes.
     #[must_use]
     pub(super) fn in_common(self, axes: &Pose) -> Self {
         Self {

@@ -5,7 +5,8 @@ use crate::spatial::Vec3;
 /// Sine of the angle below which segments count as parallel.
 const PARALLEL: f64 = 1e-12;
 
-/// Distance below which segments count as intersecting, relative to their size and distance.
+/// Distance between two segments below which they count as intersecting, relative to the sum of their half
+/// lengths and the distance between their centres.
 const INTERSECTING: f64 = 1e-14;
 
 /// Segment `center + s axis` with `|s| ≤ half_length`, m; `axis` is a unit vector.

@@ -66,7 +66,7 @@ impl Shape {
         Hull::new(points).map(|hull| Self::Hull(Arc::new(hull)))
     }
 
-    /// Returns the name of the kind of shape, with its article.
+    /// Returns the name of the kind of shape with its article, such as `a box`.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Sphere { .. } => "a sphere",

@@ -2,7 +2,8 @@
 
 use crate::spatial::Vec3;
 
-/// Point of the first shape, point of the second shape, and their difference.
+/// Corner of a simplex: the difference `apart` between the point `on_a` of the first shape and the point
+/// `on_b` of the second, m.
 #[derive(Clone, Copy)]
 pub(super) struct Corner {
     pub(super) on_a: Vec3<f64>,

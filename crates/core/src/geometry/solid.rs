@@ -7,8 +7,8 @@ use crate::model::Geometry;
 use crate::spatial::Vec3;
 use std::path::Path;
 
-/// Largest difference between the volumes of the convex hull and of a mesh that counts as convex, relative to
-/// the volume of the hull.
+/// Largest difference between the volumes of a mesh and of its convex hull, relative to the volume of the
+/// hull, for which the mesh counts as convex.
 const CONVEX: f64 = 1e-6;
 
 /// Solid bounded by a closed mesh.
@@ -23,7 +23,7 @@ pub struct Solid {
 }
 
 impl Solid {
-    /// Reads a mesh file and scales the mesh by `x`, `y` and `z` along its axes.
+    /// Reads a mesh file and scales the mesh along its axes by the factors `x`, `y` and `z`.
     ///
     /// # Errors
     /// The reason, as text, why the file does not describe a solid: it cannot be read, its surface is open,
@@ -51,7 +51,7 @@ impl Solid {
         Ok(Self { mesh, hull, warning })
     }
 
-    /// Returns true if the solid equals its convex hull, apart from rounding errors.
+    /// Returns true if the volume of the solid equals that of its convex hull to within 1e-6.
     pub fn is_convex(&self) -> bool {
         self.mesh.volume() >= (1.0 - CONVEX) * self.hull.volume()
     }

@@ -13,11 +13,12 @@ use std::f64::consts::TAU;
 /// Number of points of the circle from which the search for the nearest one starts.
 const SAMPLES: u32 = 64;
 
-/// Number of bisections of the interval between two of these points, after which the angle is exact to
-/// rounding.
+/// Number of bisections of the interval between two neighbouring samples, after which the angle is
+/// accurate to within rounding errors.
 const HALVINGS: usize = 52;
 
-/// Radius of a sphere that replaces a point, relative to the size of a hull.
+/// Radius, relative to the size of a hull, of the sphere that replaces a point in the computation of the
+/// distance between the point and the hull.
 const POINT: f64 = 1e-3;
 
 /// Point of the circle at an angle, rad, with the nearest boundary point of the other shape, their distance,
@@ -77,7 +78,8 @@ fn bisect(mut low: Sample, mut high: Sample, at: impl Fn(f64) -> Option<Sample>)
     Some(if low.distance < high.distance { low } else { high })
 }
 
-/// Returns the sample at an angle, rad, along the circle, in the axes of `a`.
+/// Returns the sample at an angle, rad, along the circle, in the axes of `a`; `None` if the nearest point
+/// of `a` is not available.
 fn sample(a: &Shape, major_radius: f64, pose: &Pose, angle: f64) -> Option<Sample> {
     let (sine, cosine) = angle.sin_cos();
     let on_circle = pose.to_common(Vec3::new(major_radius * cosine, major_radius * sine, 0.0));

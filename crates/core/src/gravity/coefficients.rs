@@ -5,7 +5,8 @@ use super::point_mass::is_earth;
 use super::series::Series;
 use crate::number_text::short;
 
-/// Highest degree for which the recursion is stable; no published model exceeds it.
+/// Highest supported degree, up to which the recursion for the harmonics is stable. Most published models end
+/// at degree 2190 or below.
 const HIGHEST: usize = 2700;
 
 /// Largest plausible magnitude of coefficients of degree 2 and above. For comparison, that of Saturn's `C̄20`
@@ -18,7 +19,7 @@ const LARGEST_FIRST: f64 = 1e-4;
 /// Fully normalised coefficients of a planet's field, of degree 1 and above.
 ///
 /// `U = (μ/r) [1 + Σ (R/r)ⁿ P̄nm(sin φ) (C̄nm cos mλ + S̄nm sin mλ)]` with latitude `φ` and longitude `λ` in
-/// axes fixed in the planet.
+/// axes fixed in the planet, the gravitational parameter `μ`, m³/s², and the reference radius `R`, m.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coefficients {
     pub(super) model: String,
@@ -29,14 +30,16 @@ pub struct Coefficients {
 
 impl Coefficients {
     /// Creates the coefficients from square arrays `c` and `s`, in which the element of degree `n` and order
-    /// `m` is `c[n (degree + 1) + m]`; `mu` is in m³/s² and the reference radius `radius`, `R`, in m.
+    /// `m` is `c[n (degree + 1) + m]`.
+    ///
+    /// `mu` is the gravitational parameter, m³/s², and `radius` is the reference radius `R`, m.
     ///
     /// `c[0]` is treated as 1 regardless of its value; entries with `m > n` and `s` of order 0 must be zero.
     ///
     /// # Errors
-    /// [`GravityError`] for a degree outside its range, wrong lengths, non-finite numbers, entries of terms
-    /// that do not exist, `mu` and `radius` that are not positive or have the wrong units, and implausible
-    /// coefficients, such as coefficients without normalisation.
+    /// [`GravityError`] for a degree outside its range, wrong lengths, non-finite numbers, nonzero entries of
+    /// terms that do not exist, `mu` and `radius` that are not positive or have the wrong units, and
+    /// implausible coefficients, such as coefficients without normalisation.
     pub fn new(
         model: &str,
         mu: f64,
@@ -102,8 +105,8 @@ impl Coefficients {
         self.series.degree()
     }
 
-    /// Returns the series up to the given degree and order, or an error if the order exceeds the degree or
-    /// the degree that of the model.
+    /// Returns the series up to the given degree and order, or an error if the order exceeds the degree, or
+    /// if the degree is below 2 or above that of the model.
     pub(super) fn truncated(&self, degree: usize, order: usize) -> Result<Series, GravityError> {
         if order > degree {
             return Err(GravityError::OrderAboveDegree { degree, order });
@@ -150,8 +153,8 @@ pub(super) fn check_planet(mu: f64, radius: f64) -> Result<(), GravityError> {
     Ok(())
 }
 
-/// Returns a description of `C20` if it is an unnormalised coefficient of the Earth, about -1.08e-3, which is
-/// √5 times the normalised value; `None` for other values and other planets.
+/// Returns a message that states `C20` if it is an unnormalised coefficient of the Earth, about -1.08e-3,
+/// which is √5 times the normalised value; `None` for other values and other planets.
 fn unnormalised_earth(mu: f64, series: &Series) -> Option<String> {
     let [c20, _] = series.get(2, 0);
     (is_earth(mu) && (0.9e-3..1.3e-3).contains(&c20.abs())).then(|| {
@@ -162,9 +165,9 @@ fn unnormalised_earth(mu: f64, series: &Series) -> Option<String> {
     })
 }
 
-/// Returns a description of the decay of the coefficients if the decay shows that they are not normalised,
-/// otherwise `None`. Unnormalised sectoral coefficients (order equal to degree) decay with the factorial of
-/// the degree.
+/// Returns a message that states how fast the coefficients decay if the decay shows that they are not
+/// normalised; otherwise `None`. Unnormalised sectoral coefficients (order equal to degree) decay with
+/// the factorial of the degree.
 ///
 /// The normalisation factor `Nnn = √(2 (2n + 1)/(2n)!)` is 1e-7 times as large at n = 10 as at n = 4, and is
 /// smaller than `Nn0` by a similar factor. Normalised coefficients of planets decay approximately as `n⁻²`

@@ -76,7 +76,7 @@ impl Clone for ExpansionCache {
 impl ExpansionCache {
     /// Returns the expansion of `field` about the position `at`, m, from the cache if possible.
     pub(super) fn about(&self, field: &GravityField, at: Vec3<f64>) -> Result<Expansion, GravityError> {
-        // The lock is released while the field is evaluated, because runs may share it.
+        // The lock is released while the field is evaluated, because runs may share the cache.
         let cached = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(expansion) = cached().iter().flatten().find(|expansion| expansion.at == at) {
             return Ok(*expansion);

@@ -14,7 +14,7 @@ use std::path::Path;
 const BUNDLED: [(&str, &str); 2] =
     [("egm2008", include_str!("models/egm2008.gfc")), ("jgm3", include_str!("models/jgm3.gfc"))];
 
-/// Largest size of a model file, bytes; a model to degree 2190 has 0.3 GB.
+/// Largest accepted size of a model file, bytes. A file with coefficients up to degree 2190 has 0.3 GB.
 const LARGEST_FILE: usize = 1 << 30;
 
 /// Gravity field of a planet, excluding its point mass, in axes `F` fixed in the planet with z along the
@@ -129,7 +129,7 @@ impl GravityField {
         &self.name
     }
 
-    /// Returns the gravitational parameter of the coefficients, m³/s².
+    /// Returns the gravitational parameter of the planet, m³/s², with which the coefficients were determined.
     pub fn mu(&self) -> f64 {
         self.mu
     }
@@ -158,7 +158,7 @@ impl GravityField {
     ///
     /// # Errors
     /// [`GravityError::BelowSurface`] below 0.996 `R`, where series are not reliable;
-    /// [`GravityError::NotFinite`] for `r`.
+    /// [`GravityError::NotFinite`] for an `r` that is not finite.
     #[inline]
     pub fn acceleration(&self, r: &Vector3<f64>) -> Result<Vector3<f64>, GravityError> {
         self.check(r)?;
@@ -168,8 +168,10 @@ impl GravityField {
         })
     }
 
-    /// Returns the acceleration, m/s², and its gradient `∂g/∂r`, 1/s², which is symmetric with zero trace;
-    /// axes of `F`.
+    /// Returns the acceleration, m/s², and its gradient `∂g/∂r`, 1/s², at position `r` from the planet's
+    /// centre, m; all in axes of `F`.
+    ///
+    /// The gradient is symmetric and has zero trace.
     ///
     /// # Errors
     /// The errors of [`GravityField::acceleration`].

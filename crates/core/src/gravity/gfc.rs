@@ -4,7 +4,10 @@ use super::coefficients::{Coefficients, check_degree};
 use super::error::GravityError;
 use super::series::Series;
 
-/// Reads the text of a `.gfc` file, up to `degree` if it is given; `file` is the name used in error messages.
+/// Reads the coefficients from the text of a `.gfc` file; `file` is the name used in error messages.
+///
+/// Coefficients above `degree` are skipped. If `degree` is `None` or exceeds the degree of the file, all
+/// coefficients are read.
 ///
 /// # Errors
 /// [`GravityError`], with the file and the line, for an invalid header or row, missing or repeated

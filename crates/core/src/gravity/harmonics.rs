@@ -21,7 +21,7 @@ pub(super) struct Harmonics {
     terms: Vec<Term>,
 }
 
-/// Coefficients of one degree and order.
+/// Coefficients of the term of one degree and order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Term {
     /// Recursion coefficients `a` and `b` of the next degree.
@@ -84,7 +84,7 @@ impl Harmonics {
         }
     }
 
-    /// Returns the first `L` series at `r` for `μ = R = 1`.
+    /// Returns the first `L` of the eight series at position `r`, m, in units with `μ = R = 1`.
     ///
     /// Source: Holmes and Featherstone, J. Geodesy 76, 279-299, 2002, equations 11 and 12 (forward column).
     #[inline(always)]

@@ -24,7 +24,7 @@ pub(crate) struct FieldPoint {
 /// point of a grid fixed in the planet or, if the robot travels farther than the grid spacing during the
 /// step, about the robot. If only differences from a nearby reference are required, the midpoint between
 /// robot and reference replaces the robot. The result depends only on the instant and the step, so a run that
-/// resumes from a checkpoint has identical bits.
+/// resumes from a checkpoint has bit-identical results.
 #[derive(Clone, Debug)]
 pub(crate) struct LocalField<'a> {
     gravity: &'a Gravity,
@@ -132,8 +132,8 @@ impl LocalField<'_> {
         }
     }
 
-    /// Returns the expansion of the planet's field that covers the positions in all lanes; `None` if there is
-    /// none.
+    /// Returns the expansion of the planet's field that covers the positions in all lanes; `None` if no
+    /// expansion covers them.
     #[inline(always)]
     fn expansion<S: Real>(&self, at: Vec3<S>) -> Option<&Expansion> {
         // no loop, because an iterator would not be inlined
@@ -201,7 +201,7 @@ fn each<S: Real, T: Copy + Default>(
     Ok(found)
 }
 
-/// Gathers one vector per lane.
+/// Returns a vector of SIMD numbers whose lane `i` holds `vectors[i]`.
 #[inline(always)]
 fn lanes<S: Real>(vectors: [Vec3<f64>; MAX_LANES]) -> Vec3<S> {
     Vec3::from_lanes(|i| vectors[i])

@@ -131,8 +131,8 @@ impl Gravity {
     /// s; axes of `I`.
     ///
     /// # Errors
-    /// [`GravityError::BelowSurface`] below the surface of a planet with a field, and the errors of third
-    /// bodies.
+    /// If the planet has a field, [`GravityError::BelowSurface`] below its surface and
+    /// [`GravityError::NotFinite`] for an `r` that is not finite; also the errors of third bodies.
     #[inline]
     pub fn acceleration(&self, t: f64, r: &Vector3<f64>) -> Result<Vector3<f64>, GravityError> {
         let mut g = point_mass(self.mu, r);
@@ -148,8 +148,8 @@ impl Gravity {
         Ok(g)
     }
 
-    /// Returns the gradient `∂g/∂r`, 1/s², axes of `I`, which is symmetric with zero trace; arguments as for
-    /// [`Gravity::acceleration`].
+    /// Returns the gradient `∂g/∂r` of the acceleration, 1/s², at position `r` from the planet's centre, m,
+    /// and simulation time `t`, s; axes of `I`. The gradient is symmetric and has zero trace.
     ///
     /// # Errors
     /// The errors of [`Gravity::acceleration`].

@@ -3,8 +3,8 @@
 use crate::spatial::{Real, Vec3};
 use nalgebra::{Matrix3, Vector3};
 
-/// Returns the acceleration `g = -μ r / |r|³`, m/s², of a point mass with the gravitational parameter `mu`,
-/// `μ`, m³/s², at position `r`, m, in the axes of `r`.
+/// Returns the acceleration `g = -μ r / |r|³`, m/s², of a point mass with the gravitational parameter `μ`
+/// (`mu`), m³/s², at position `r`, m, in the axes of `r`.
 ///
 /// All code uses this function, so that the residual acceleration of a reference in free fall is exactly
 /// zero.

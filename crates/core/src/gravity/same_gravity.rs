@@ -4,13 +4,14 @@ use super::{Gravity, GravityError, ThirdBody};
 use std::sync::Arc;
 
 impl Gravity {
-    /// Returns the gravity of a run for which `self` is given and whose reference orbit obeys `reference`.
+    /// Returns the gravity of a run whose environment has the gravity `self` and whose reference orbit has
+    /// the gravity `reference`.
     ///
-    /// If both are equal, the result is `reference`. If the reference obeys only a point mass, `self` may
-    /// differ from it; the reference is then not in free fall.
+    /// If both are equal, the result is `reference`. If `reference` is only a point mass, `self` may differ
+    /// from it and is the result; the reference orbit is then not in free fall.
     ///
     /// # Errors
-    /// [`GravityError::OtherGravity`] if the reference obeys a different field or has different third bodies.
+    /// [`GravityError::OtherGravity`] if the two differ and `reference` is more than a point mass.
     pub fn shared_with(self, reference: &Arc<Self>) -> Result<Arc<Self>, GravityError> {
         match self.differs_from(reference) {
             None => Ok(Arc::clone(reference)),

@@ -52,8 +52,8 @@ impl Series {
         all.filter(|&(n, m)| self.get(n, m) != [0.0; 2]).map(|(_, m)| m).max().unwrap_or(0)
     }
 
-    /// Returns the derivative with respect to the coordinate along an axis. It is a series with one degree
-    /// more.
+    /// Returns the derivative with respect to the coordinate along an axis: a series whose degree
+    /// is higher by one.
     ///
     /// With `Z = V + i W`: `∂z Znm = -(n-m+1) Zn+1,m`, `(∂x + i ∂y) Znm = -Zn+1,m+1`,
     /// `(∂x - i ∂y) Znm = (n-m+2)(n-m+1) Zn+1,m-1`; in normalised form, the factors are square roots of

@@ -18,8 +18,8 @@ const GRID_SPACING: f64 = 32.0;
 #[derive(Clone, Debug)]
 pub(crate) struct Sky {
     pub(super) rot_fi: Mat3<f64>,
-    /// First grid point used at this instant, and the expansion about it in axes of `I`, which the stages of
-    /// a step share.
+    /// Point in axes of `F`, m, of the first expansion of the planet's field at this instant, and that
+    /// expansion in axes of `I`. Later requests for the same point reuse it.
     first: OnceCell<(Vec3<f64>, Expansion)>,
     /// Expansion of the third-body field about the reference; within 40 m the field is linear to 1e-7 of the
     /// Moon's tide.

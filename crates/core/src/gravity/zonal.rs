@@ -28,7 +28,8 @@ pub(super) struct Zonal {
 }
 
 impl Zonal {
-    /// Returns the factors `cn = Jn (R/r)ⁿ`, the direction `r̂`, `u = z/r`, and the distance `r`, m.
+    /// Returns the factors `cn = Jn (R/r)ⁿ` for `n` from 2 to 6, the direction `r̂`, `u = z/r`, and the
+    /// distance `|r|`, m, at position `r` from the planet's centre, m.
     #[inline]
     fn at(&self, r: &Vector3<f64>) -> ([f64; 5], Vector3<f64>, f64, f64) {
         let distance = r.norm();
@@ -41,7 +42,8 @@ impl Zonal {
         (c, r * inverse, r.z * inverse, distance)
     }
 
-    /// Returns the acceleration `g = (μ/r²) Σ cn (P'n+1 r̂ - P'n ẑ)`, m/s².
+    /// Returns the acceleration `g = (μ/r²) Σ cn (P'n+1 r̂ - P'n ẑ)`, m/s², at position `r` from the planet's
+    /// centre, m, in the axes of `r`.
     pub(super) fn acceleration(&self, r: &Vector3<f64>) -> Vector3<f64> {
         let (c, up, u, distance) = self.at(r);
         let p = first(u);
@@ -49,8 +51,11 @@ impl Zonal {
         (up * dot(&c, &p[1..]) - axial) * (self.mu / (distance * distance))
     }
 
-    /// Returns the acceleration `g`, m/s², and its gradient, 1/s²: `∂g/∂r = (μ/r³) Σ cn [P'n+1 1 + P''n+1 (r̂
-    /// ẑᵀ + ẑ r̂ᵀ) - P''n+2 r̂ r̂ᵀ - P''n ẑ ẑᵀ]` with the unit matrix `1`.
+    /// Returns the acceleration `g`, m/s², and its gradient, 1/s², at position `r` from the planet's centre,
+    /// m, in the axes of `r`.
+    ///
+    /// `∂g/∂r = (μ/r³) Σ cn [P'n+1 1 + P''n+1 (r̂ ẑᵀ + ẑ r̂ᵀ) - P''n+2 r̂ r̂ᵀ - P''n ẑ ẑᵀ]` with the unit
+    /// matrix `1`.
     pub(super) fn gradient(&self, r: &Vector3<f64>) -> (Vector3<f64>, Matrix3<f64>) {
         let (c, up, u, distance) = self.at(r);
         let (p, pp) = (first(u), second(u));

@@ -5,7 +5,8 @@ use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 /// Returns a rotation from joint axes, whose z axis is `axis`, to link axes. `axis` is a nonzero vector in
 /// link axes.
 ///
-/// The result is exact if `axis` is a coordinate axis, so that joints about x, y or z add no rounding error.
+/// The result is exact if `axis` has the direction +x, +y, +z or −z, so that joints about these axes add no
+/// rounding error.
 pub(super) fn rotation_to_axis(axis: &Vector3<f64>) -> Matrix3<f64> {
     let axis = axis.normalize();
     let (x, y, z) = (Vector3::x(), Vector3::y(), Vector3::z());

@@ -1,4 +1,4 @@
-//! Attachment of one robot to another, such as an arm to a bus.
+//! Attachment of one robot to another, such as an arm to a spacecraft bus.
 
 use super::builder::ModelBuilder;
 use super::description::{Description, Joint, JointKind, Link};
@@ -73,8 +73,8 @@ impl Model {
         builder.build()
     }
 
-    /// Returns the description of this robot with the link that carries the frame `name` as its root, and the
-    /// pose of the frame in that link.
+    /// Returns the description of this robot with, as its root, the link that names the body of the frame
+    /// `name`, and the pose of the frame in that link.
     fn rooted_below(&self, name: &str) -> Result<(Description, Isometry3<f64>), ModelError> {
         let frame = &self.frames[self.frame(name)?];
         let root = &self.body_frame(frame.body).name;

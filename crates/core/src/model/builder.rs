@@ -1,4 +1,4 @@
-//! Builder of robots, link by link.
+//! Builder that assembles the model of a robot link by link.
 
 use super::closed_loop::Mimic;
 use super::compile::{check_parts, compile};
@@ -72,7 +72,7 @@ impl ModelBuilder {
         Ok(self)
     }
 
-    /// Returns a builder with the links and joints of an existing robot.
+    /// Returns a builder with the links, joints, frames and loops of an existing robot.
     ///
     /// # Errors
     /// [`ModelError::NoMass`] for a robot without links, and the errors of [`ModelBuilder::new`],
@@ -119,8 +119,8 @@ impl ModelBuilder {
     /// Adds a frame fixed to the link `link`; `pose` is the pose of the frame in link axes.
     ///
     /// # Errors
-    /// [`ModelError`] for an unknown link, a name that a link or frame already has, or a pose that is not
-    /// finite.
+    /// [`ModelError`] for an unknown link, a name that is empty or that a link or frame already has, or a
+    /// pose that is not finite.
     pub fn add_frame(
         &mut self,
         name: &str,
@@ -137,14 +137,14 @@ impl ModelBuilder {
         Ok(self)
     }
 
-    /// Adds a warning to those of the model.
+    /// Adds a warning to those that the built model returns.
     pub fn warn(&mut self, warning: ModelWarning) -> &mut Self {
         self.warnings.push(warning);
         self
     }
 
-    /// Copies the warnings of a robot, except those about inertias, because adding the robot's links produces
-    /// them again.
+    /// Copies the warnings of kind [`ModelWarning::Note`] of a robot. Warnings of other kinds are produced
+    /// again when the robot's links and joints are added and compiled.
     pub(super) fn keep_notes(&mut self, model: &Model) -> &mut Self {
         let notes = model.warnings().iter().filter(|warning| matches!(warning, ModelWarning::Note(_)));
         self.warnings.extend(notes.cloned());
@@ -170,8 +170,9 @@ impl ModelBuilder {
         compile(self.description, self.warnings)
     }
 
-    /// Adds a link after checking its inertial. A link that is merged into another body (`is_part`) may have
-    /// an indefinite inertia, because the inertia of the whole body is checked later.
+    /// Adds a link after checking its name and its inertia. A link that is merged into another
+    /// body (`is_part`) may have an indefinite inertia, because the inertia of the whole body is checked
+    /// later.
     fn add_link(&mut self, link: Link, is_part: bool) -> Result<(), ModelError> {
         self.check_new_frame_name(&link.name)?;
         if let Some(inertial) = &link.inertial {

@@ -1,4 +1,4 @@
-//! Closing of loops of a robot.
+//! Addition of closed loops to a robot.
 
 use super::builder::ModelBuilder;
 use super::closed_loop::{Loop, SHORTEST};
@@ -8,7 +8,7 @@ use super::tree::Model;
 use nalgebra::Isometry3;
 
 impl ModelBuilder {
-    /// Closes a loop between two frames that were added before.
+    /// Adds a closed loop between two frames that were added before.
     ///
     /// # Errors
     /// [`ModelError`] for an unknown frame, a loop that connects a frame with itself, an empty name, the name

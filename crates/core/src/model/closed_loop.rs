@@ -1,4 +1,5 @@
-//! Closed loops of a robot: joints that close kinematic loops, and joints that mimic other joints.
+//! Couplings that are not part of the tree of a robot: joints that close kinematic loops, and joints that
+//! mimic other joints.
 
 use nalgebra::Isometry3;
 
@@ -16,13 +17,13 @@ pub struct Loop {
     pub kind: LoopKind,
     /// Names of the two frames that the joint connects.
     pub frames: [String; 2],
-    /// Poses of the joint in these frames. The axis of the joint is z.
+    /// Pose of the joint in each of the two frames. The axis of the joint is the z axis of these poses.
     pub poses: [Isometry3<f64>; 2],
-    /// Distance between the two origins for [`LoopKind::Distance`], m; `None` means the distance at zero joint
-    /// positions. Other kinds ignore the length.
+    /// Distance between the two origins for [`LoopKind::Distance`], m; `None` means the distance at zero
+    /// joint positions. Other kinds ignore the length.
     pub length: Option<f64>,
-    /// True if the start of a simulation is moved to the nearest configuration that closes the loop. If
-    /// false, a start that does not close the loop is an error.
+    /// True if the start configuration of a simulation is moved to the nearest one that closes the loop. If
+    /// false, a start configuration that does not close the loop is an error.
     pub project: bool,
 }
 
@@ -53,7 +54,7 @@ pub struct Mimic {
 }
 
 impl LoopKind {
-    /// Returns the number of scalar constraints.
+    /// Returns the number of scalar constraints of a joint of this kind.
     pub fn rows(self) -> usize {
         match self {
             Self::Weld => 6,

@@ -1,4 +1,4 @@
-//! Constraints of a model: closed loops and mimic joints with their frames and joints as indices.
+//! Constraints of a model: closed loops and mimic joints that refer to bodies and joints by index.
 
 use super::closed_loop::LoopKind;
 use super::frame::Frame;
@@ -10,7 +10,8 @@ pub struct Closure {
     pub name: String,
     /// Equation that the configuration must satisfy.
     pub constraint: Constraint,
-    /// True if the start of a simulation may be moved to satisfy the constraint; false for mimic joints.
+    /// True if the start configuration of a simulation may be moved to satisfy the constraint; false for
+    /// mimic joints.
     pub project: bool,
 }
 
@@ -29,9 +30,9 @@ pub enum Constraint {
     },
     /// Coupling of two joints: `q_joint = ratio · q_leader + offset`.
     Mimic {
-        /// Index of the joint.
+        /// Index of the mimic joint, in the order of the joints in `v`.
         joint: usize,
-        /// Index of the leader.
+        /// Index of the leader, in the order of the joints in `v`.
         leader: usize,
         /// Rate of the joint divided by the rate of the leader.
         ratio: f64,
@@ -41,7 +42,7 @@ pub enum Constraint {
 }
 
 impl Closure {
-    /// Returns the number of scalar constraints.
+    /// Returns the number of scalar constraints of the closure.
     pub fn rows(&self) -> usize {
         match &self.constraint {
             Constraint::Frames { kind, .. } => kind.rows(),
@@ -49,8 +50,8 @@ impl Closure {
         }
     }
 
-    /// Returns the directions in which the closure transmits forces and moments, as [`LoopKind::directions`];
-    /// the list is empty for mimic joints.
+    /// Returns the directions in which the closure transmits forces and moments, in the format of
+    /// [`LoopKind::directions`]; the list is empty for mimic joints.
     pub fn directions(&self) -> &'static [(usize, bool)] {
         match &self.constraint {
             Constraint::Frames { kind, .. } => kind.directions(),

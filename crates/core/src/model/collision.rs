@@ -17,7 +17,7 @@ impl Model {
     }
 
     /// Returns this robot with `shapes` as the collision shapes of a link, instead of the existing ones. The
-    /// motion of the robot does not change.
+    /// bodies, joints and inertias do not change.
     ///
     /// # Errors
     /// [`ModelError::UnknownName`] if no link has this name.

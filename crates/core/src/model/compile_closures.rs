@@ -63,7 +63,7 @@ impl Model {
         Ok(Closure { name: name.clone(), constraint, project: *project })
     }
 
-    /// Returns a frame at `pose` in the frame `name`.
+    /// Returns a frame whose pose in the frame `name` is `pose`.
     fn place(&self, name: &str, pose: &Isometry3<f64>) -> Result<Frame, ModelError> {
         let Frame { body, rot_kf, pos_kf, .. } = &self.frames[self.frame(name)?];
         let rotation: Mat3<f64> = (*pose.rotation.to_rotation_matrix().matrix()).into();

@@ -17,12 +17,12 @@ pub struct Description {
     pub(super) joints: Vec<(usize, Joint)>,
     /// Additional frames, each with its name, the index of its link and its pose in link axes.
     pub(super) frames: Vec<(String, usize, Isometry3<f64>)>,
-    /// Loops that constraints close.
+    /// Closed loops, which are compiled into constraints of the model.
     pub(super) loops: Vec<Loop>,
 }
 
 impl Description {
-    /// Returns the loops that constraints close.
+    /// Returns the closed loops, which are compiled into constraints of the model.
     pub fn loops(&self) -> &[Loop] {
         &self.loops
     }
@@ -58,7 +58,7 @@ pub struct Inertial {
 /// Link of a robot. A link without an [`Inertial`] is massless.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link {
-    /// Name, unique in the robot.
+    /// Name of the link, which is unique in the robot.
     pub name: String,
     /// Mass and inertia; `None` for a massless link.
     pub inertial: Option<Inertial>,
@@ -67,8 +67,8 @@ pub struct Link {
     /// Collision shapes, without meshes whose file does not exist. They are drawn if the link has no visual
     /// shapes.
     pub collisions: Vec<Visual>,
-    /// Reasons why collision shapes were not read, such as a mesh file that does not exist; one for each of
-    /// these shapes.
+    /// Reasons why collision shapes were not read, such as a mesh file that does not exist; one reason
+    /// for each shape that was not read.
     pub skipped_collisions: Vec<String>,
 }
 
@@ -138,14 +138,14 @@ pub enum Geometry {
     HalfSpace,
     /// Convex hull of points, such as a convex piece of a mesh; a collision shape only.
     Hull {
-        /// Points, m.
+        /// Coordinates of the points, m.
         points: Arc<[[f64; 3]]>,
     },
     /// Triangle mesh in a file.
     Mesh {
-        /// Path, with `package://` resolved if the package was found.
+        /// Path of the file, with `package://` resolved if the package was found.
         filename: String,
-        /// Scale along each axis.
+        /// Factor by which the mesh is scaled along each axis.
         scale: [f64; 3],
     },
 }
@@ -153,9 +153,9 @@ pub enum Geometry {
 /// Joint that connects a link to its parent link.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
-    /// Name, unique in the robot.
+    /// Name of the joint, which is unique in the robot.
     pub name: String,
-    /// Kind of motion, with its axis.
+    /// Kind of motion that the joint permits, with its axis.
     pub kind: JointKind,
     /// Pose of the joint's frame in the axes of the parent link, at joint position zero.
     pub origin: Isometry3<f64>,

@@ -112,8 +112,8 @@ pub enum ModelWarning {
         /// Principal moments of the link, kg m², ascending.
         moments: [f64; 3],
     },
-    /// The inertia of a link is not positive definite, but that of the whole body to which the link belongs is
-    /// positive definite.
+    /// The inertia of a link is not positive definite, but that of the whole body to which the link belongs
+    /// is positive definite.
     IndefinitePart {
         /// Name of the link.
         link: String,
@@ -211,7 +211,8 @@ impl ModelError {
         }
     }
 
-    /// Converts the error for a duplicate name to the error for two attached robots, which suggests a prefix.
+    /// Converts the error for a duplicate name to the error for a name that two robots to be joined both
+    /// have, which suggests a prefix. Other errors are returned unchanged.
     pub(super) fn suggest_prefix(self, prefix: &str) -> Self {
         match self {
             Self::DuplicateName { what, name } if prefix.is_empty() => Self::NameOfBoth { what, name },
@@ -221,7 +222,7 @@ impl ModelError {
     }
 }
 
-/// Returns why a joint cannot be mimicked, with advice.
+/// Returns the reason why a joint cannot be the leader of a mimic joint, with advice.
 fn leader_fault(is_fixed: bool, candidates: &[String], leader: &str) -> String {
     match is_fixed {
         true => "is fixed; make the mimic joint fixed too, or remove its mimic".to_owned(),

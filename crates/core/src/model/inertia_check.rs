@@ -18,7 +18,7 @@ pub(super) const LONGEST: f64 = 1e12;
 
 /// Classification of an inertia by its principal moments (kg m², ascending).
 pub(super) enum Sense {
-    /// Inertia of a real body.
+    /// Inertia of a real body, or no mass and no inertia.
     Physical,
     /// Inertia that violates the triangle inequality, so that no body with positive density has it.
     BreaksTriangle([f64; 3]),
@@ -31,7 +31,7 @@ pub(super) enum Sense {
     Massless,
 }
 
-/// Checks the inertial of the link `link` and classifies its inertia.
+/// Checks the inertial properties of the link `link` and classifies its inertia.
 pub(super) fn check_inertial(link: &str, inertial: &Inertial) -> Result<Sense, ModelError> {
     let link = || link.to_owned();
     let Inertial { mass, com, inertia } = inertial;

@@ -15,8 +15,8 @@ const LARGEST: f64 = 1e20;
 pub struct JointSpring {
     /// Stiffness `k` at the rest position, N m/rad (N/m).
     pub stiffness: f64,
-    /// Cubic stiffness `k₃`, N m/rad³ (N/m³): positive for a spring that hardens with its deflection, negative
-    /// for one that softens.
+    /// Cubic stiffness `k₃`, N m/rad³ (N/m³): positive for a spring that hardens with its deflection,
+    /// negative for one that softens.
     pub cubic_stiffness: f64,
     /// Joint position `q₀` at which the spring exerts no torque, rad (m).
     pub rest_position: f64,

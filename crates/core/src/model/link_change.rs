@@ -21,11 +21,11 @@ pub struct LinkChange {
 }
 
 impl LinkChange {
-    /// Replaces the inertial values of `link` if the change is for a link of that name. A link without an
-    /// inertial is treated as a point mass at the origin of the link.
+    /// Replaces the inertial values of `link` if the change is for a link of that name. A link without
+    /// inertial properties is treated as a point mass at the origin of the link.
     ///
     /// # Errors
-    /// [`ModelError::ChangeWithoutMass`] if the link has no inertial and no mass is given.
+    /// [`ModelError::ChangeWithoutMass`] if the link has no inertial properties and no mass is given.
     pub(super) fn apply(&self, link: &mut Link) -> Result<(), ModelError> {
         if link.name != self.link {
             return Ok(());

@@ -28,7 +28,7 @@ pub struct Node {
     pub parent: usize,
     /// True if the body has children other than the body with the next index.
     pub is_fork: bool,
-    /// Index after the last body of the subtree; bodies are numbered depth first.
+    /// One more than the index of the last body of the subtree; bodies are numbered depth first.
     pub end: usize,
     /// Kind of the joint; has no meaning for the base.
     pub axis: Axis,
@@ -61,7 +61,7 @@ pub struct JointProperties {
     pub limits: Limits,
     /// Spring that acts between the two links; `None` if there is none.
     pub spring: Option<JointSpring>,
-    /// Unit axis in the child link's axes.
+    /// Unit vector along the joint axis, in the axes of the child link.
     pub axis: Vec3<f64>,
     /// Point on the axis in the child link's axes, m. It is the origin of the link, unless the joint is
     /// traversed backwards.
@@ -98,19 +98,19 @@ impl Model {
         &self.description
     }
 
-    /// Returns the number of joints, `n`.
+    /// Returns the number of moving joints, `n`.
     #[inline(always)]
     pub fn joint_count(&self) -> usize {
         self.nodes.len() - 1
     }
 
-    /// Returns the length of a configuration, `7 + n`.
+    /// Returns the length of a configuration vector `q`, `7 + n`.
     #[inline(always)]
     pub fn nq(&self) -> usize {
         self.nodes.len() + 6
     }
 
-    /// Returns the length of a velocity, `6 + n`.
+    /// Returns the length of a velocity vector `v`, `6 + n`.
     #[inline(always)]
     pub fn nv(&self) -> usize {
         self.nodes.len() + 5
@@ -132,17 +132,17 @@ impl Model {
         self.joints.iter().enumerate().filter_map(|(j, joint)| Some((j, joint.spring.as_ref()?)))
     }
 
-    /// Returns the joints in the order of `v`.
+    /// Returns the properties of the moving joints in the order of `v`.
     pub fn joints(&self) -> &[JointProperties] {
         &self.joints
     }
 
-    /// Returns all named frames.
+    /// Returns all frames: those of the links, followed by the frames that were added to links.
     pub fn frames(&self) -> &[Frame] {
         &self.frames
     }
 
-    /// Returns the frame of the link that names a body (index).
+    /// Returns the frame of the link whose name is that of the body with the index `body`.
     pub fn body_frame(&self, body: usize) -> &Frame {
         &self.frames[self.body_frames[body]]
     }

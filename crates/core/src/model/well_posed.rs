@@ -83,8 +83,8 @@ fn is_more_than_rounding(pivot: f64, diagonal: f64, scale: f64) -> bool {
     pivot > PIVOT_SHARE * diagonal && pivot > ROUNDING_SHARE * scale
 }
 
-/// Returns the largest entry of the linear block, kg, for `k < 3`, and of the angular block, kg m², for other
-/// `k`.
+/// Returns the largest magnitude of the entries of the linear block, kg, for `k < 3`, or of the angular
+/// block, kg m², for other `k`.
 fn scale(inertia: &Matrix6<f64>, k: usize) -> f64 {
     let start = if k < 3 { 0 } else { 3 };
     inertia.fixed_view::<3, 3>(start, start).amax()

@@ -9,7 +9,7 @@ use crate::spatial::{self, Quat, RotationSpline, Spline, exp_so3};
 /// Behaviour of a path before its first point and after its last point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Ends {
-    /// A state at such a time is an error, [`PathError::TimeOutOfPath`].
+    /// The path has no state before its first and after its last point: [`PathError::TimeOutOfPath`].
     #[default]
     Error,
     /// The path continues along a straight line with the velocity and the angular velocity of the nearest
@@ -34,7 +34,7 @@ pub struct PathPoints {
     pub attitudes: Option<Vec<Vector4<f64>>>,
 }
 
-/// C² path that interpolates the given points.
+/// Twice continuously differentiable path through given points.
 ///
 /// Positions alone are interpolated by a cubic spline, whose error is of order 4 in the spacing of the
 /// points. Positions with velocities are interpolated by a quintic spline with a continuous third derivative,

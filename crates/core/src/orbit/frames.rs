@@ -61,7 +61,8 @@ pub struct Nadir {
 }
 
 impl Nadir {
-    /// Computes the frame from a state of the reference orbit; its axes are `(y, -z, -x)` of [`Lvlh`].
+    /// Computes the frame from a state of the reference orbit. Its x, y and z axes are the y, -z and -x axes
+    /// of [`Lvlh`].
     ///
     /// # Errors
     /// [`OrbitError::UndefinedFrame`] for a reference at rest or in rectilinear motion.

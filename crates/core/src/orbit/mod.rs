@@ -1,7 +1,8 @@
 //! Reference orbits: the motion of the origin of W.
 //!
-//! [`Orbit`] is their interface; each kind of orbit has its own file or folder. All vectors have inertial
-//! axes `I` and are measured from the centre of the planet. Units are metres, seconds and radians.
+//! [`Orbit`] is their interface; each kind of orbit has its own file or folder. All vectors are
+//! expressed in inertial axes `I`, and positions are measured from the centre of the planet.
+//! Units are metres, seconds and radians.
 
 mod arrays;
 mod custom_path;

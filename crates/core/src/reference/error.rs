@@ -6,7 +6,7 @@ use crate::spatial::SplineError;
 
 /// Errors of references: invalid arguments, or a reference that cannot be evaluated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(missing_docs)] // the fields are what the messages say
+#[allow(missing_docs)] // the messages explain the fields
 pub enum ReferenceError {
     #[error(
         "'{name}' of the reference contains {value}; expected finite numbers between -1e60 and 1e60 (SI units)",

@@ -15,7 +15,7 @@ pub enum ReferenceFrame {
     World,
     /// Local orbital frame L (Hill) of an orbit, with its origin at the origin of W.
     Lvlh(Arc<dyn Orbit>),
-    /// Base of the robot, relative to which the path is given.
+    /// Base B of the robot: axes and origin of its base link.
     Base,
     /// Body frame of a second spacecraft in free motion.
     Target(Target),
@@ -27,7 +27,7 @@ pub enum ReferenceFrame {
 /// of the frame, which all copies share.
 #[derive(Clone, Debug)]
 pub struct MovingFrame {
-    /// Number of the system in the world.
+    /// Index of the system in the world.
     pub system: usize,
     /// Index of the frame in the model of the system.
     pub frame: usize,

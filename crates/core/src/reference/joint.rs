@@ -40,8 +40,8 @@ pub trait JointPath: Send + Sync + Debug {
 /// Joint path that several owners can share.
 pub type JointReference = Arc<dyn JointPath>;
 
-/// Returns the joint, as an index into `q`, whose position differs most from the start of `path`, and that
-/// difference, rad or m.
+/// Returns the joint, as an index into the joint positions `q`, whose position differs most from the start of
+/// `path`, and the magnitude of this difference, rad or m.
 pub fn joint_start_offset(path: &dyn JointPath, q: &[f64]) -> (usize, f64) {
     let mut first = JointSample::new(path.count());
     path.sample(0.0, &mut first);

@@ -13,7 +13,7 @@ pub struct JointSpline {
 }
 
 impl JointSpline {
-    /// Creates the motion of `count`, n, joints from rest to rest through `points` (K, n), rad or m. The
+    /// Creates the motion of `count` joints from rest to rest through `points`, `(K, count)`, rad or m. The
     /// joints also stop at the inner points if `stops` is true.
     ///
     /// If limits are given, one per joint, they determine the times. With stops, each piece has the shortest
@@ -79,9 +79,10 @@ impl JointSpline {
         Self::waypoints(start.len(), &points, timing, true)
     }
 
-    /// Creates the spline through samples of the motion of `count`, n, joints: `positions` (K, n), rad or m,
-    /// at `times` (K,), s, and `rates` (K, n), rad/s or m/s, or `None` if the rates are not known. The first
-    /// positions are held before the first time, and the last positions after the last time.
+    /// Creates the spline through K samples of the motion of `count` joints at `times`, `(K,)`, s:
+    /// `positions`, `(K, count)`, rad or m, and `rates`, `(K, count)`, rad/s or m/s, or `None` if the rates
+    /// are not known. The first positions are held before the first time, and the last positions after the
+    /// last time.
     ///
     /// # Errors
     /// [`ReferenceError`] for fewer than two samples, wrong lengths, numbers that are not finite, or times

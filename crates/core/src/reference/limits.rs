@@ -125,6 +125,6 @@ fn instants(times: &[f64]) -> impl Iterator<Item = f64> {
 pub enum Timing<T, L> {
     /// Given times, s: a duration, or the time of each point.
     Given(T),
-    /// Limits; the times are the shortest ones that respect them.
+    /// Limits, which determine the times.
     Limits(L),
 }

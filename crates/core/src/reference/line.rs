@@ -4,8 +4,8 @@ use super::{Hold, ReferenceError, TaskLimits, TaskPath, TaskSample, TimeLaw};
 use crate::spatial::{Mat3, Motion, Vec3, exp_so3, log_rotation};
 
 /// Straight line `p(t) = p₀ + s d` with the attitude `R(t) = exp(s θ) R₀` on a geodesic of SO(3), where
-/// `s(t)` is a time law, `p₀` and `R₀` are the start pose, `d` is the displacement, m, and `θ` the rotation
-/// vector, rad.
+/// `s(t)` is a time law, `p₀` and `R₀` are the position, m, and the attitude at the start, `d` is the
+/// displacement, m, and `θ` the rotation vector, rad.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
     start: Hold,
@@ -28,7 +28,7 @@ impl Line {
     ///
     /// # Errors
     /// [`ReferenceError::LimitNotPositive`] for an invalid limit; [`ReferenceError::NoLimit`] if the limits
-    /// do not determine a time.
+    /// do not determine a time; the errors of [`TimeLaw::quintic`] for the duration that they determine.
     pub fn within(start: Hold, end: &Hold, limits: &TaskLimits) -> Result<Self, ReferenceError> {
         limits.check()?;
         let mut line = Self::new(start, end, TimeLaw::quintic(1.0)?);

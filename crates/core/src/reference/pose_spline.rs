@@ -20,9 +20,9 @@ impl PoseSpline {
     /// the limits.
     ///
     /// # Errors
-    /// [`ReferenceError`] for fewer than two poses, times that do not increase, successive attitudes half a
-    /// turn apart, and limits that are not positive or do not determine the times; with limits, also for
-    /// successive poses that coincide.
+    /// [`ReferenceError`] for fewer than two poses, a wrong number of times, times that are not finite or do
+    /// not increase, successive attitudes half a turn apart, and limits that are not positive or do not
+    /// determine the times; with limits, also for successive poses that coincide.
     pub fn waypoints(
         poses: &[Hold],
         timing: &Timing<Vec<f64>, TaskLimits>,
@@ -90,8 +90,9 @@ impl PoseSpline {
     }
 }
 
-/// Returns the times of the waypoints, s, starting at zero, or an error for two successive points that
-/// coincide. `time_for` returns the duration of the piece between two points, s.
+/// Returns the times of the waypoints, s, starting at zero, or an error if the duration of a piece is zero,
+/// because its two points coincide or no limit applies to the motion between them. `time_for` returns the
+/// duration of the piece between two points, s.
 pub(super) fn rest_times<P>(
     points: &[P],
     time_for: impl Fn(&P, &P) -> f64,

@@ -6,8 +6,8 @@ use crate::spatial::{Mat3, Motion, Vec3, exp_so3};
 use nalgebra::Vector3;
 
 /// Screw motion `p(t) = c + exp(s θ u)(p₀ − c) + s d u`, with `R(t) = exp(s θ u) R₀` or constant attitude,
-/// where `s(t)` is a time law, `p₀` and `R₀` are the start pose, `c` is a point on the axis, `u` its unit
-/// vector, `θ` the angle, rad, and `d` the advance, m.
+/// where `s(t)` is a time law, `p₀` and `R₀` are the position, m, and the attitude at the start, `c` is a
+/// point on the axis, m, `u` the unit vector of the axis, `θ` the angle, rad, and `d` the advance, m.
 ///
 /// If the attitude rotates, the motion is the exponential of a twist on SE(3). Without advance `d`, the path
 /// is a circle.

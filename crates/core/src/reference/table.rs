@@ -23,7 +23,8 @@ impl Hold {
 }
 
 /// Samples a reference at many `times` (T,), s: poses (T, 4, 4), velocities and accelerations (T, 6). They
-/// are in W axes, or in the axes of the reference's frame if `in_own_frame` is true.
+/// are those of the path in the frame of the reference if `in_own_frame` is true, otherwise those that
+/// [`TaskReference::sample`] returns.
 ///
 /// # Errors
 /// [`ReferenceError::WrongLength`] for outputs of the wrong length, and the errors of

@@ -38,7 +38,7 @@ impl TaskReference {
         })
     }
 
-    /// Returns true if samples are relative to the robot's base.
+    /// Returns true if the samples are relative to the robot's base, in base axes.
     pub fn is_relative_to_base(&self) -> bool {
         matches!(self.frame, ReferenceFrame::Base)
     }
@@ -51,7 +51,7 @@ impl TaskReference {
         }
     }
 
-    /// Returns true if samples require an orbit.
+    /// Returns true if the reference is given in a local orbital frame, whose motion depends on an orbit.
     pub fn needs_orbit(&self) -> bool {
         matches!(self.frame, ReferenceFrame::Lvlh(_))
     }
@@ -62,8 +62,8 @@ impl TaskReference {
     }
 
     /// Returns the distance, m, and the angle, rad, between a frame with the pose `(rot, pos)` and the start
-    /// of the reference at the time `start`, s. The pose is relative to the axes of
-    /// [`TaskReference::sample`].
+    /// of the reference at the time `start`, s. The pose is relative to the base, in base axes, if
+    /// [`TaskReference::is_relative_to_base`]; otherwise it is in W.
     ///
     /// # Errors
     /// The errors of [`TaskReference::sample`].

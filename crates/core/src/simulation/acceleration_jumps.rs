@@ -10,12 +10,12 @@ use serde::{Deserialize, Serialize};
 /// step length `h` and the jump `Δq̈` of the acceleration. Step doubling measures such small errors.
 const SMALL: f64 = 1e-6;
 
-/// Sums of the acceleration jumps of each joint over all steps. Step doubling, by contrast, measures only
-/// some of the steps.
+/// Acceleration jumps of each joint, summed over the steps of a run. Step doubling, by contrast, measures
+/// only some of the steps.
 ///
 /// The last stage of a Runge-Kutta step is evaluated at a prediction of the state at the end of the step, and
 /// the first stage of the next step at that state itself. With the step length `h` and the jump `Δq̈` between
-/// both, `h |Δq̈|/6` is the difference between the joint rate and an embedded third-order solution. For an
+/// the two, `h |Δq̈|/6` is the difference between the joint rate and an embedded third-order solution. For an
 /// oscillation with the angular frequency `ω` and `z = ω h`, this difference is `z⁴/72` times the amplitude
 /// of the rate, and the error of a step is `z⁵/120 = 1.75 (z⁴/72)^(5/4)` times that amplitude.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -26,7 +26,8 @@ pub(super) struct AccelerationJumps {
     command: Vec<f64>,
     /// Length of the previous step, s.
     h: f64,
-    /// Sum `Σ (h |Δq̈|/6)^(5/4)` over all steps for each joint, `(n,)`, with rates in rad/s or m/s.
+    /// Sum `Σ (h |Δq̈|/6)^(5/4)` of each joint, `(n,)`, with `h |Δq̈|/6` in rad/s or m/s. The sum omits small
+    /// jumps, and all jumps at a change of the torques or at an event.
     pub(super) jumps: Vec<f64>,
     /// Largest magnitude of the rate of each joint, `(n,)`, rad/s or m/s.
     pub(super) fastest: Vec<f64>,
@@ -44,8 +45,10 @@ impl AccelerationJumps {
         [&self.ended, &self.command, &self.jumps, &self.fastest].map(Vec::len)
     }
 
-    /// Adds a step of length `h`, s, during which the joint torques `command`, `(n,)`, were held. `is_smooth`
-    /// is true if neither an event nor an impact occurs at the start of the step.
+    /// Adds a step of length `h`, s, during which the joint torques `command`, `(n,)`, N m or N, were held.
+    /// `is_smooth` is true if only a change of the torques can make the accelerations discontinuous at the
+    /// start of the step. The jumps at the start are added if `is_smooth` is true and the torques are those
+    /// of the previous step.
     #[inline]
     pub(super) fn add_step<S: Scalar>(
         &mut self,
@@ -66,8 +69,9 @@ impl AccelerationJumps {
         self.h = h;
     }
 
-    /// Adds the jumps at the start of `step`, with the factor `sixth` that makes them velocities, s. Most
-    /// jumps are small; the first loop has no branches, so that it is vectorised.
+    /// Adds the jumps at the start of `step`. `sixth` is a sixth of the length of the previous step, s, which
+    /// converts jumps to velocities; zero omits all jumps. Most jumps are small; the first loop has no
+    /// branches, so that it is vectorised.
     #[inline(always)]
     fn add_jumps<S: Scalar>(&mut self, step: &StepEnds<'_, S>, sixth: f64) {
         let n = self.ended.len();

@@ -49,7 +49,7 @@ impl<S: Scalar> Accuracy<S> {
         (self.doubling.is_some(), !self.every_step.is_empty())
     }
 
-    /// Returns the errors and checks of the tree with index `number` accumulated so far.
+    /// Returns the errors and checks accumulated so far for the tree with index `number`.
     pub(super) fn save(&self, number: usize) -> (Option<Errors>, Option<SavedChecks>) {
         let errors = self.doubling.as_ref().map(|doubling| doubling.errors[number].clone());
         (errors, self.every_step.get(number).map(EveryStep::save))
@@ -106,8 +106,9 @@ impl<S: Scalar> Accuracy<S> {
         Ok(())
     }
 
-    /// Estimates the errors of the step over `interval`, s, that ended at `state`; `is_smooth` is true if
-    /// neither an event nor an impact occurs at the start of the step.
+    /// Adds the completed step over `interval`, s, which ended at `state`, to the acceleration jumps and the
+    /// checks. `is_smooth` is true if only a change of the joint torques can make the accelerations
+    /// discontinuous at the start of the step. Overwrites `buffers`. Does nothing with an external engine.
     pub(super) fn measure_step(
         &mut self,
         interval: (f64, f64),

@@ -20,7 +20,8 @@ pub struct AttachedControl {
 }
 
 impl<S: Scalar> RunState<'_, S> {
-    /// Finds the active controls whose frames have become rigidly connected to the frames that they follow.
+    /// Finds the active controls whose frames have become rigidly connected to the frames that they follow,
+    /// and adds them to `self.events.attached`.
     pub(super) fn find_attached(&mut self) {
         let welds = &self.connections.active.welds;
         if welds.is_empty() || self.moving_frames.is_empty() {

@@ -6,7 +6,8 @@ use crate::model::{Model, Node};
 use crate::spatial::{Force, Mat3, Motion, Real, Scalar, Vec3};
 use nalgebra::{Matrix3, Vector3};
 
-/// Parts of a system that loads read and write. `data` holds the kinematics of the configuration `q`.
+/// References to the data of one system, from which effects obtain the states of its bodies, and to which the
+/// external wrenches on these bodies are written. `data` holds the kinematics of the configuration `q`.
 pub(super) struct LoadedSystem<'a, S> {
     pub(super) data: &'a mut Data<S>,
     pub(super) q: &'a [S],

@@ -11,15 +11,16 @@ use crate::spatial::{Scalar, Vec3};
 use crate::world::{Brake, BrakeIndex, FrameIndex};
 
 impl<S: Scalar> RunState<'_, S> {
-    /// Returns a brake, whose field `is_engaged` is up to date.
+    /// Returns the brake with this index; its field `is_engaged` is up to date.
     pub(super) fn brake(&self, at: BrakeIndex) -> &Brake {
         &self.systems[at.system].brakes[at.brake]
     }
 
-    /// Engages a brake as the event with index `number`. A brake with an infinite slip torque stops its joint
-    /// by an impulse, `Δv = −M⁻¹ e_j q̇_j / (M⁻¹)_jj`, with the unit vector `e_j` and the rate `q̇_j` of the
-    /// joint. The mass matrix `M` is that of the motions that closed loops and other braked joints permit. An
-    /// external engine instead stops the joint during the next steps.
+    /// Engages a brake at `t`, s, and returns the record of this event, whose index is `number`. A brake with
+    /// an infinite slip torque stops its joint by an impulse, `Δv = −M⁻¹ e_j q̇_j / (M⁻¹)_jj`, with the unit
+    /// vector `e_j` and the rate `q̇_j` of the joint. The mass matrix `M` is that of the motions that closed
+    /// loops and other braked joints permit. An external engine instead stops the joint during the next
+    /// steps.
     pub(super) fn engage(&mut self, number: usize, at: BrakeIndex, t: f64) -> EventRecord {
         let (before, slip_torque) = (self.snapshots(), self.brake(at).slip_torque);
         let (tree, joint) = self.set_brake(at, true);
@@ -33,7 +34,7 @@ impl<S: Scalar> RunState<'_, S> {
         self.record_of_brake((number, EventKind::Engage, t), at, &before, (impulse, lost))
     }
 
-    /// Disengages a brake as the event with index `number`.
+    /// Disengages a brake at `t`, s, and returns the record of this event, whose index is `number`.
     pub(super) fn disengage(&mut self, number: usize, at: BrakeIndex, t: f64) -> EventRecord {
         self.set_brake(at, false);
         self.record_of_brake((number, EventKind::Disengage, t), at, &self.snapshots(), (0.0, 0.0))
@@ -94,8 +95,8 @@ impl<S: Scalar> RunState<'_, S> {
         record
     }
 
-    /// Returns the axis of the joint of a brake and the origin of the link that it moves, both in W, and
-    /// whether the joint is revolute.
+    /// Returns the axis of the joint of a brake, the origin of the link that this joint moves, m, both in W,
+    /// and whether the joint is revolute.
     fn joint_axis(&self, at: BrakeIndex, state: &Snapshot) -> (Vec3<f64>, Vec3<f64>, bool) {
         let (model, joint) = (self.model(at.system), self.brake(at).joint);
         let mut data = Data::<f64>::new(model);

@@ -17,16 +17,19 @@ use crate::world::{
 const STEPS: std::ops::RangeInclusive<f64> = 1e-12..=1e9;
 
 impl Simulation {
-    /// Checks all settings that can be checked before the run.
+    /// Checks all settings that can be checked before the run. Also sets the initial motion of the frames in
+    /// which references are given.
     ///
     /// # Errors
     /// A [`SimulationError`] for the first invalid setting: an initial state of the wrong length, outside its
     /// range, or with a quaternion that does not have unit norm; a joint that starts beyond its limits when
     /// these are enforced; a time step, tolerance or other number outside its range; an effect or a gravity
-    /// field without the orbit that it requires; an effect that acts on no system, or two effects that count
-    /// the same force on a body twice; an Earth whose epoch or axes differ from those of the orbit; invalid
-    /// names, events, contacts or controls; a setting that an external engine does not support; a reference
-    /// without a tool; a reference that starts too far from the tool or the joints that follow it.
+    /// field without the orbit that it requires, or a gravity field that does not match the orbit; an effect
+    /// that acts on no system, or two effects that count the same force on a body twice; an Earth whose epoch
+    /// or axes differ from those of the orbit; invalid names, brakes, events, contacts or controls; a closed
+    /// loop or mimic joint whose constraint the initial state violates; a setting that an external engine
+    /// does not support; a reference in an unknown frame; a reference without a tool; a reference that starts
+    /// too far from the tool or the joints that follow it.
     pub fn check(&self) -> Result<(), SimulationError> {
         self.check_each(|system| check_state(&system.model, &system.q, &system.v))?;
         SimulationError::check_positive("time_step", self.time_step)?;
@@ -87,8 +90,8 @@ impl Simulation {
         })
     }
 
-    /// Returns an error for settings that an external engine does not support, and for contacts, loops and
-    /// mimic joints that were not passed to it.
+    /// Returns an error for settings that an external engine does not support, for contacts, loops and mimic
+    /// joints that were not passed to it, and for contacts that it computes but the world does not declare.
     fn check_engine(&self) -> Result<(), SimulationError> {
         let cannot = |name: &str, what, remedy| {
             Err(SimulationError::EngineOfWorld { name: name.to_owned(), what, remedy })
@@ -190,8 +193,8 @@ fn check_contacts(contacts: &[Contact]) -> Result<(), ContactError> {
     Ok(())
 }
 
-/// Checks that the contacts on which latches depend exist, have compliant normal forces and are between the two
-/// systems of the capture.
+/// Checks that the contacts on which latches depend exist, have compliant normal forces and act between the
+/// two systems of the capture.
 fn check_latches(events: &[Event], contacts: &[Contact]) -> Result<(), WorldError> {
     for Event { name, when, action } in events {
         let (When::Latch(envelope), Action::Capture { by, of, .. }) = (when, action) else { continue };
@@ -262,7 +265,8 @@ fn check_system_controls(system: &System) -> Result<(), SimulationError> {
     check_control_references(model, q, controls, system.reference_start_tolerance)
 }
 
-/// Checks the coefficient of restitution, and that the joints start within their limits.
+/// Checks, if the joint limits are enforced, the coefficient of restitution and that the joints start within
+/// these limits.
 fn check_stops(system: &System) -> Result<(), SimulationError> {
     let Some(restitution) = system.stops else { return Ok(()) };
     if !(0.0..=1.0).contains(&restitution) {

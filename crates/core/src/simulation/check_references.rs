@@ -1,4 +1,4 @@
-//! Checks that references start at the initial pose or at the initial joint positions of the robot.
+//! Checks that references start near the initial poses of their frames, or near the initial joint positions.
 
 use super::error::SimulationError;
 use super::state_range::unit_of;
@@ -34,9 +34,10 @@ pub(super) fn check_reference(
     Ok(())
 }
 
-/// Checks the references of those controls that are active from the start of the run. A reference of a frame
-/// must start within `tolerance`, m and rad, of the frame. A reference of joint positions must start within
-/// the second entry of `tolerance`, rad (m for prismatic joints), of the initial positions.
+/// Checks the references of the controls that are active from the start of the run, except references that
+/// are shifted to the pose or positions at that time. A reference of a frame must start within `tolerance`, m
+/// and rad, of the frame. A reference of joint positions must start within the second entry of `tolerance`,
+/// rad (m for prismatic joints), of the initial positions.
 pub(super) fn check_control_references(
     model: &Model,
     q: &[f64],

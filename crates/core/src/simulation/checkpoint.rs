@@ -39,7 +39,7 @@ pub struct Checkpoint {
     groups: Vec<GroupCheckpoint>,
 }
 
-/// State of one group of systems.
+/// Checkpoint of one group of systems.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct GroupCheckpoint {
     /// Time of the checkpoint, s.
@@ -47,13 +47,13 @@ pub(super) struct GroupCheckpoint {
     pub(super) schedule: Schedule,
     pub(super) progress: Progress,
     pub(super) local_reference: Option<LocalReference>,
-    /// Wrenches that the caller of the stepper has commanded and that are still held.
+    /// Wrenches that the caller of the stepper has commanded and that still act.
     #[serde(default, skip_serializing_if = "WrenchCommands::is_empty")]
     pub(super) wrenches: WrenchCommands,
     pub(super) controllers: SavedControllers,
 }
 
-/// Everything that a step changes, except the controllers.
+/// State of a group of systems that a step changes, except the state of the controllers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Progress {
     /// Number of steps taken so far.
@@ -94,13 +94,13 @@ pub(super) struct SystemProgress {
     pub(super) engaged: Vec<bool>,
 }
 
-/// Connections and events of a group of systems.
+/// Connections, events and contacts of a group of systems, and the totals of its momentum and energy.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct WorldProgress {
     pub(super) members: SavedMembers,
     pub(super) events: Vec<EventState>,
-    /// Records of the events that have happened; empty in the state that is saved before a trial step, which
-    /// removes its events from the list when it is undone.
+    /// Records of the events that have happened. Empty in the state that is saved before a trial step,
+    /// because the records of a trial step are removed separately when the step is undone.
     pub(super) records: Vec<EventRecord>,
     pub(super) attached: Vec<Attached>,
     pub(super) ledger: Ledger,
@@ -108,7 +108,7 @@ pub(super) struct WorldProgress {
     /// Modes of all pairs of contact pieces.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) contacts: Vec<Mode>,
-    /// Touches of the declared contacts.
+    /// Present or last touch of each declared contact.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) touches: Vec<Touch>,
     /// Points at which the pieces of each pair rest on each other; empty without impact laws.

@@ -5,7 +5,7 @@ use thiserror::Error;
 
 /// Reason why a run cannot resume from a checkpoint.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[allow(missing_docs)] // the fields are what the messages say
+#[allow(missing_docs)] // the messages explain the fields
 pub enum CheckpointError {
     #[error("the checkpoint is damaged: {reason}; run the scenario again")]
     Unreadable { reason: String },

@@ -8,18 +8,19 @@ use crate::model::{BASE_NQ, BASE_NV, Constraint, Model};
 use crate::number_text::short;
 use crate::world::System;
 
-/// Largest opening of a loop or deviation of a mimic joint at the start, m or rad (its rate: m/s or rad/s),
-/// that is corrected without `project`.
+/// Largest initial opening of a loop or deviation of a mimic joint, m or rad, and largest rate of this error,
+/// m/s or rad/s, that are corrected even if `project` is false for the loop or mimic joint.
 const ACCEPTED: f64 = 1e-6;
 /// Largest opening, m or rad, of a loop that counts as closed.
 const CLOSED: f64 = 1e-11;
 
 impl System {
-    /// Returns the initial configuration and velocity with all loops closed; see [`closed_start`]. Joints that
-    /// brakes hold rigidly keep the rate zero.
+    /// Returns the initial configuration and velocity with all loops closed; see [`closed_start`]. The
+    /// correction of the velocity does not change the rates of joints that are held by engaged brakes with an
+    /// infinite slip torque.
     ///
     /// # Errors
-    /// Those of [`closed_start`].
+    /// The same errors as [`closed_start`].
     pub(super) fn closed_start(&self) -> Result<[Vec<f64>; 2], SimulationError> {
         let mut held = vec![false; self.model.joint_count()];
         let rigid = self.brakes.iter().filter(|brake| brake.is_engaged && brake.slip_torque.is_infinite());
@@ -28,13 +29,13 @@ impl System {
     }
 }
 
-/// Returns a configuration and a velocity with all loops closed: those nearest to the given ones in the metric
-/// of the kinetic energy. Mimic joints that start at zero follow their leaders. `held` contains, for each joint,
-/// `(n,)`, whether it must start at rest.
+/// Returns a configuration and a velocity with all loops closed: those nearest to the given ones in the
+/// metric of the kinetic energy. Mimic joints that start at zero follow their leaders. Joints for which
+/// `held`, `(n,)`, is true are locked while the velocity is corrected.
 ///
 /// # Errors
 /// [`SimulationError::OpenLoop`] for a loop without `project` whose opening exceeds 1e-6 m or rad, or
-/// changes by more than 1e-6 m/s or rad/s; [`SimulationError::OpenMimic`] for a mimic joint with such an
+/// changes faster than 1e-6 m/s or rad/s; [`SimulationError::OpenMimic`] for a mimic joint with such an
 /// error; [`SimulationError::CannotClose`] for loops that cannot be closed together.
 pub(crate) fn closed_start(
     model: &Model,
@@ -87,8 +88,8 @@ fn follow_leaders(model: &Model, q: &mut [f64], v: &mut [f64]) {
 }
 
 /// Checks that no loop or mimic joint without `project` has an error, or a rate of its error, above
-/// [`ACCEPTED`]. `x` are the errors of all scalar constraints, or their rates, and `units` the units of
-/// distances and angles in `x`.
+/// [`ACCEPTED`]. `x` contains the errors of all scalar constraints, or the rates of these errors; `units`
+/// contains the units of distances and of angles in `x`.
 fn check_open(loops: &ClosedLoops<f64>, x: &[f64], units: [&'static str; 2]) -> Result<(), SimulationError> {
     for (i, closure) in loops.closures().iter().enumerate().filter(|(_, closure)| !closure.project) {
         let sizes = loops.magnitudes(i, x);
@@ -104,7 +105,7 @@ fn check_open(loops: &ClosedLoops<f64>, x: &[f64], units: [&'static str; 2]) -> 
     Ok(())
 }
 
-/// Returns a text with a distance and an angle, or their rates, and the `units` of both; zeros are omitted.
+/// Formats a distance and an angle, or their rates, with their `units`. Zero values are omitted.
 fn opening(sizes: [f64; 2], units: [&str; 2]) -> String {
     let parts = sizes.iter().zip(units).filter(|(size, _)| **size > 0.0);
     let parts: Vec<String> = parts.map(|(size, unit)| format!("{} {unit}", short(*size))).collect();

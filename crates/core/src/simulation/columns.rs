@@ -23,13 +23,14 @@ pub enum Length {
     Joints,
     /// Number of bodies of the robot.
     Bodies,
-    /// Number of components of the tracking error of a control, `k`: 6 if the control tracks a frame,
-    /// otherwise one per joint.
+    /// Number of components of the tracking error of a control, `k`: 6 if the control tracks a frame, 1 if it
+    /// controls a grip force, otherwise one per joint.
     Errors,
 }
 
 impl Length {
-    /// Returns the length for the robot `model`, or 1 for a length that does not depend on the robot.
+    /// Returns the length for the robot `model`; 1 for rows, events and tracking errors, whose number does
+    /// not follow from the model.
     fn of(self, model: &Model) -> usize {
         match self {
             Self::Fixed(length) => length,
@@ -148,7 +149,7 @@ impl Column {
         self.shape[1..].iter().map(|length| length.of(model)).product()
     }
 
-    /// Returns the path of the column of one control, effect, contact or loop.
+    /// Returns the path of the column of the control, effect, contact or loop with the name `owner`.
     pub fn path_of(&self, owner: &str) -> String {
         self.path.replace('*', owner)
     }

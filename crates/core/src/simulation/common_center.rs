@@ -1,8 +1,8 @@
 //! Angular momenta of several trees about their common centre of mass during a step.
 //!
 //! At every stage, the total moment of the forces between trees about any common point is zero. Moments about
-//! the centres of mass of the single trees lack this property, because their arms `c_i − c` change during the
-//! step. In a group with contacts, the angular impulses of all trees are therefore integrated about the
+//! the centres of mass of the individual trees lack this property, because their arms `c_i − c` change during
+//! the step. In a group with contacts, the angular impulses of all trees are therefore integrated about the
 //! common centre of mass `c`, and referred to the centres of mass of the trees at the end of the step.
 
 use super::state::{Rate, State};
@@ -63,7 +63,8 @@ pub(super) fn move_to_own_centers<S: Real>(trees: &[Tree<'_, S>], start: &State<
     );
 }
 
-/// Mass, kg, centre of mass in W, m, and force, N, or linear momentum, N s, `x_i` of a tree.
+/// Mass, kg, and centre of mass in W, m, of a tree, with a vector `x` in W axes that is either the external
+/// force on the tree, N, or its linear momentum, N s.
 #[derive(Clone, Copy)]
 struct Part<S> {
     mass: S,
@@ -105,8 +106,8 @@ impl<S: Real> Common<S> {
         Self { center: first_moment * reciprocal, per_mass: total * reciprocal }
     }
 
-    /// Returns `(c_i − c) × (x_i − m_i Σx/m)` for the tree `i` with the mass `m_i` and the centre of mass
-    /// `c_i`.
+    /// Returns `(c_i − c) × (x_i − m_i Σx/m)`, W axes, N m or N m s, for the tree `i` with the mass `m_i` and
+    /// the centre of mass `c_i`.
     #[inline(always)]
     fn relative_moment(&self, Part { mass, center, x }: Part<S>) -> Vec3<S> {
         (center - self.center).cross(x - self.per_mass * mass)

@@ -24,7 +24,8 @@ pub(super) struct ActiveWelds {
 }
 
 impl Connections {
-    /// Creates the connections, empty before any event, of systems that are given by name and model.
+    /// Creates the connections at the start of a run, when no systems are connected yet. The systems are
+    /// given by their names and models.
     pub(super) fn new<'m>(
         systems: impl Iterator<Item = (&'m str, &'m Model)>,
         has_events: bool,
@@ -51,8 +52,8 @@ impl Connections {
         found
     }
 
-    /// Removes the weld with index `weld`. If this separates its tree into two, the system that the weld
-    /// connected becomes the root of the tree that would have no root.
+    /// Removes the weld with index `weld`. If this separates its tree in two, one of the two trees keeps the
+    /// root. The system at the other end of the weld becomes the root of the other tree.
     pub(super) fn remove(&mut self, weld: usize) {
         let Weld { by, of, .. } = self.active.welds.remove(weld);
         for system in [by.system, of.system] {
@@ -62,7 +63,7 @@ impl Connections {
         }
     }
 
-    /// Adds a weld. The tree of the capturing frame keeps its root.
+    /// Adds a weld. The root of the joined tree is the root of the tree of the capturing frame.
     pub(super) fn add(&mut self, weld: Weld) {
         let root = self.root_of(weld.by.system).unwrap_or(weld.by.system);
         self.active.welds.push(weld);
@@ -124,8 +125,8 @@ impl Connections {
     }
 
     /// Returns, for each loop or mimic joint of a tree, its name in the trace of a system: the name of the
-    /// loop in that system, or of the capture that closes the loop; `None` for those of other systems. `name`
-    /// returns the name of a capture from its index.
+    /// loop in that system, or of the capture that closes the loop; `None` for the loops and mimic joints of
+    /// other systems. `name` returns the name of a capture from its index.
     pub(super) fn loops_in(
         &self,
         system: usize,

@@ -3,7 +3,7 @@
 use crate::spatial::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Integrals of a contact over the time during which it acts.
+/// Displacements, energies and impulses of a contact, integrated while the contact acts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct ContactState {
     /// Elastic part of the sliding displacement of the second side relative to the first, in axes of the
@@ -12,12 +12,12 @@ pub(super) struct ContactState {
     pub(super) slip: Vec3<f64>,
     /// Elastic part of the angle by which the second side turns about the normal relative to the first, rad.
     pub(super) turn: f64,
-    /// Energy that the normal force has taken from the motion, J: dissipated, or stored elastically.
+    /// Energy that the normal force has removed from the motion, J, by dissipation or by elastic storage.
     pub(super) normal_work: f64,
     /// Energy that the law of the normal force dissipates while the pieces press on each other, J. Except for
     /// errors of the integrator, it is `normal_work` less the elastic energy.
     pub(super) normal_loss: f64,
-    /// Energy that friction has taken from the motion, J: dissipated, or stored in the bristles.
+    /// Energy that friction has removed from the motion, J, by dissipation or by storage in the bristles.
     pub(super) friction_work: f64,
     /// Impulse on the second side, W axes, N s.
     pub(super) impulse: Vec3<f64>,
@@ -30,7 +30,7 @@ pub(super) struct ContactState {
 pub(super) type ContactRate = ContactState;
 
 impl ContactState {
-    /// State before the pieces have touched.
+    /// State of a contact before its pieces touch for the first time.
     pub(super) const ZERO: Self = {
         let zero = Vec3 { x: 0.0, y: 0.0, z: 0.0 };
         Self {

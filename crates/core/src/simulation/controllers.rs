@@ -14,7 +14,7 @@ pub(super) struct Controllers<'a, S> {
     pub(super) set: ControllerSet<'a, S>,
     tool: Option<usize>,
     reference: Option<&'a TaskReference>,
-    /// Sample of `reference` at its last evaluation; `None` before.
+    /// Sample of `reference` at its last evaluation; `None` before the first evaluation.
     sample: Option<TaskSample<f64>>,
 }
 
@@ -50,8 +50,9 @@ impl<'a, S: Scalar> Controllers<'a, S> {
         }))
     }
 
-    /// Updates the controllers at `t`, s, and sets the joint torques of the system. Without controls, does
-    /// nothing. Requires the kinematics of `state` in `system`.
+    /// Updates the controllers at `t`, s, and sets the joint torques of the system and the accelerations that
+    /// the controllers request. Without controls, does nothing. Requires the kinematics of `state` in
+    /// `system`.
     pub(super) fn update(
         &mut self,
         t: f64,

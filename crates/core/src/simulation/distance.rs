@@ -13,7 +13,7 @@ const FINEST: f64 = 1e-9;
 pub struct FarSystem {
     /// Index of the system in the world.
     pub system: usize,
-    /// Distance of the origin of its base from the reference orbit, m.
+    /// Distance of the origin of its base from the origin of W, which moves on the reference orbit, m.
     pub distance: f64,
     /// Spacing of adjacent `f64` positions at this distance, m.
     pub resolution: f64,

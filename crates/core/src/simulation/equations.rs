@@ -128,8 +128,8 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
     }
 
     /// Initializes the states of the contacts and checks that bodies overlap only where their contact permits
-    /// it. `names` has the names of the systems for error messages. Requires the kinematics of `state` in the
-    /// trees.
+    /// it. `names` contains the names of the systems for error messages. Requires the kinematics of `state`
+    /// in the trees.
     pub(super) fn start_contacts(
         &self,
         names: &[String],
@@ -153,8 +153,8 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         self.contacts.begin((t, end), &self.trees, state).map_err(at_time(t))
     }
 
-    /// Determines whether bodies with an impact law strike each other, or begin to rest on each other, at `t`,
-    /// s. Requires the kinematics of `state` in the trees.
+    /// Determines whether an impact between bodies with an impact law occurs at `t`, s, and whether such
+    /// bodies begin to rest on each other. Requires the kinematics of `state` in the trees.
     pub(super) fn touched(&mut self, t: f64, state: &State<S>) -> Result<Touched, SimulationError> {
         if !self.contacts.has_impact_laws() {
             return Ok(Touched::default());
@@ -162,7 +162,8 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         self.contacts.touched(&self.trees, state).map_err(at_time(t))
     }
 
-    /// Applies the impacts between bodies with an impact law at `t`, s; see [`Contacts::strike`].
+    /// Applies the impacts between bodies with an impact law at `t`, s. If `t` is `None`, no touches are
+    /// recorded. If `is_endless` is true, the impacts have no restitution. See [`Contacts::strike`].
     pub(super) fn strike(
         &mut self,
         t: Option<f64>,
@@ -175,8 +176,8 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         self.contacts.strike(t, &mut self.trees, state, is_endless).map_err(at_time(t.unwrap_or_default()))
     }
 
-    /// Corrects the forces between bodies that rest on each other and returns the largest change of a velocity,
-    /// m/s; see [`Contacts::correct`].
+    /// Corrects the forces between bodies that rest on each other, and returns the largest change of a
+    /// velocity, m/s; see [`Contacts::correct`].
     pub(super) fn correct_forces(
         &mut self,
         hold: &mut Hold,
@@ -186,17 +187,17 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         self.contacts.correct(hold, &self.trees, state).map_err(at_time(t))
     }
 
-    /// Returns true if a joint of any tree has friction or stops, if a latch may close, or if bodies may
-    /// touch.
+    /// Returns true if a joint of any tree has friction, stops or a brake, if a latch may close, or if bodies
+    /// may touch.
     pub(crate) fn has_modes(&self) -> bool {
         !self.latches.is_empty()
             || !self.contacts.is_empty()
             || self.trees.iter().any(|tree| tree.modes.is_active())
     }
 
-    /// Returns the smallest margin of any latch or contact to its next change at `state` and `t`, s; it is
-    /// negative beyond the change. If there are latches or contacts, writes the kinematics of `state`
-    /// relative to W to the trees.
+    /// Returns the smallest margin of any latch or contact to its next change at `state` and `t`, s. The
+    /// margin is negative beyond the change, and infinite without latches and contacts. If there are latches
+    /// or contacts, writes the kinematics of `state` relative to W to the trees.
     pub(super) fn margin(&mut self, t: f64, state: &State<S>) -> Result<f64, SimulationError> {
         if self.latches.is_empty() && self.contacts.is_empty() {
             return Ok(f64::INFINITY);

@@ -16,7 +16,7 @@ use thiserror::Error;
 
 /// Error that prevents the start of a run or ends it early.
 #[derive(Debug, Error)]
-#[allow(missing_docs)] // the fields are what the messages say
+#[allow(missing_docs)] // the messages explain the fields
 pub enum SimulationError {
     #[error(
         "the initial {state} opens the loop '{name}'{by}; correct {it}, or set 'project: true' on the loop to start at \

@@ -27,7 +27,7 @@ impl Estimates {
         Self { drifts: coordinates.map(|i| self.drifts[i]).collect(), ..self }
     }
 
-    /// Combines the estimates of two successive intervals: `before`, and this one.
+    /// Combines these estimates with the estimates `before` of the preceding interval.
     pub(super) fn after(self, before: &Self) -> Self {
         let sum = |a: Option<f64>, b: Option<f64>| a.zip(b).map(|(a, b)| a + b);
         let drifts = self.drifts.iter().zip(&before.drifts);

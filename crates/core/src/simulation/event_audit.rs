@@ -97,8 +97,8 @@ impl<S: Scalar> RunState<'_, S> {
     }
 
     /// Returns the linear and the angular relative velocity of the two frames after a capture, as fractions
-    /// of those before the capture, or of 1 m/s and 1 rad/s if these are larger. Returns zeros for a release
-    /// and with an external engine.
+    /// of those before the capture, or of 1 m/s and 1 rad/s if these are larger. Returns zeros for other
+    /// events and with an external engine.
     fn twist_left(&self, event: &Applied<'_>, after: &[Snapshot]) -> [f64; 2] {
         if event.kind != EventKind::Capture || self.mover.is_external() {
             return [0.0; 2]; // an external engine removes the relative velocity during the next steps

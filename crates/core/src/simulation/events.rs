@@ -18,8 +18,8 @@ pub(super) struct EventState {
     pub(super) is_held: bool,
 }
 
-/// Control whose frame a capture has rigidly connected to the frame that the control follows. All indices are
-/// those within the group.
+/// Control whose frame a capture has rigidly connected to the frame that the control follows. All indices
+/// are relative to the group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Attached {
     pub(super) control: usize,

@@ -42,7 +42,7 @@ impl EveryStep {
         Ok(Self { stream: Stream::new(model), start: None, rows })
     }
 
-    /// Returns the results of all steps so far.
+    /// Returns the results of the checks over all steps so far.
     pub(super) fn checks(&self) -> PairChecks {
         self.stream.checks()
     }

@@ -1,4 +1,4 @@
-//! Description of a control that follows external commands.
+//! Description of a control that follows the commands of the caller of a stepper.
 
 use crate::control::Interface;
 

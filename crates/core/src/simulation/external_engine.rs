@@ -58,8 +58,8 @@ impl<'a> ExternalEngine<'a> {
         self.has_output.then(|| &self.output.acceleration[range.clone()])
     }
 
-    /// Returns the work done on a system in the last step, including the work of its connections, less the
-    /// energy that its joints dissipated, J.
+    /// Returns the work done on a system in the last step, including the work of its connections and
+    /// contacts, less the energy that its joints dissipated, J.
     pub(super) fn work_of_step(&self, system: usize) -> f64 {
         let done = &self.output.systems[system];
         done.work + done.weld_work
@@ -72,7 +72,7 @@ impl<'a> ExternalEngine<'a> {
         self.has_output.then(|| &self.output.contacts[own])
     }
 
-    /// Adds the impulses and the work of the contacts in the last step to their states.
+    /// Adds the impulses and the work of the contacts in the last step to the contact states in `state`.
     pub(super) fn add_exchanged<S>(&self, contacts: &Contacts, state: &mut State<S>) {
         for (contact, own) in self.contacts.iter().enumerate() {
             if let Some(own) = own {
@@ -140,7 +140,8 @@ impl<'a> ExternalEngine<'a> {
         Ok(())
     }
 
-    /// Writes the output of a step to `state`.
+    /// Writes the configurations and velocities at the end of a step to `state`, and adds the impulses and
+    /// the work of the step.
     fn update_state<S: Scalar>(&self, state: &mut State<S>) {
         let output = &self.output;
         let vector = |x: &[f64]| Vec3::new(S::of(x[0]), S::of(x[1]), S::of(x[2]));

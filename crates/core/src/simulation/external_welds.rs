@@ -10,7 +10,8 @@ use crate::spatial::{Quat, Scalar, Vec3};
 use crate::world::{FrameIndex, Weld};
 
 impl<S: Scalar> RunState<'_, S> {
-    /// Passes the active connections to the external engine, and marks the pairs of pieces that they hold.
+    /// Passes the active connections to the external engine, if there is one, and marks the pairs of contact
+    /// pieces that the connections hold together.
     pub(super) fn pass_welds(&mut self) {
         let welds: Vec<_> = self.connections.active.welds.iter().map(|weld| self.body_weld(weld)).collect();
         let frames = |system: usize| self.equations.trees[system].model.frames();
@@ -23,7 +24,7 @@ impl<S: Scalar> RunState<'_, S> {
         }
     }
 
-    /// Passes the engaged brakes to the external engine.
+    /// Passes the engaged brakes to the external engine, if there is one.
     pub(super) fn pass_brakes(&mut self) {
         let Self { mover, systems, numbers, .. } = self;
         if let Mover::External(engine) = mover {

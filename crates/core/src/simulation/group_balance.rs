@@ -8,14 +8,16 @@ use serde::{Deserialize, Serialize};
 /// Errors of the momentum and of the energy of a group of several systems, accumulated over the rows of a
 /// run.
 ///
-/// With the value of a quantity in the first row marked by the index 0, the checks are:
+/// The index 0 marks values in the first row. The checks are:
 ///
 /// - `max |P − P₀ − ∫F dt|`, with the linear momentum `P` and the external force `F`, relative to the largest
-///   sum of the magnitudes of the linear momenta of the bodies,
+///   `|P|` or, if that is larger, the largest sum of the magnitudes of the linear momenta of the bodies
+///   relative to the centre of mass of the group,
 /// - `max |L − L₀ − ∫T dt|`, with the angular momentum `L` about the centre of mass of the group and the
-///   external moment `T`, relative to the largest sum of the magnitudes of the angular momenta of the bodies,
-/// - `max |E − E₀ − W|`, with the kinetic energy `E` and the work `W`, relative to the sum of `Σ |ΔW|` and the
-///   largest `E`.
+///   external moment `T` about the same point, relative to the largest sum of the magnitudes of the angular
+///   momenta of the bodies about this point,
+/// - `max |E − E₀ − W|`, with the kinetic energy `E` and the work `W`, relative to the sum of `Σ |ΔW|` and
+///   the largest `E`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GroupBalance {
     /// Indices of the systems in the world.
@@ -46,8 +48,8 @@ pub(super) struct GroupRow {
     pub(super) impulse: Momentum<f64>,
     /// Kinetic energy of the group in W, J.
     pub(super) kinetic_energy: f64,
-    /// Work done on the group by motors, external wrenches and springs, less the energy lost in joints and
-    /// captures, J.
+    /// Work done on the group by motors, external wrenches, contacts and springs, less the energy dissipated
+    /// in joints, captures and brakes, J.
     pub(super) work: f64,
     /// Sums of the magnitudes of the momenta of the bodies: linear, N s, relative to the centre of mass of
     /// the group, and angular about it, N m s.

@@ -12,8 +12,8 @@ use crate::world::{Action, FrameIndex, RigidPose, Seat, Seating, Weld, WorldErro
 
 impl<S: Scalar> RunState<'_, S> {
     /// Applies the events that are due at `t`, s, the start of a step over `interval`, s, in the order of
-    /// their declaration. One row is recorded before them and one after them. Requires the kinematics of the
-    /// current state, with projected base twists, in the equations of motion.
+    /// their declaration. If any of them has an effect, one row is recorded before them and one after them.
+    /// Requires the kinematics of the current state, with projected base twists, in the equations of motion.
     pub(super) fn happen(&mut self, t: f64, interval: (f64, f64)) -> Result<(), SimulationError> {
         if self.events.list.is_empty() {
             return Ok(());

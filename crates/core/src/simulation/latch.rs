@@ -53,9 +53,9 @@ impl Latch {
         inside >= -ROUNDING
     }
 
-    /// Returns the margin to the next change of [`Latch::is_held`], negative if the change is overdue; `inside`
-    /// is a value of [`Latch::inside`]. The margin is infinite while a required contact does not touch, because
-    /// contacts begin and cease to touch only between steps.
+    /// Returns the margin to the next change of [`Latch::is_held`], negative if the change is overdue;
+    /// `inside` is a value of [`Latch::inside`]. The margin is infinite while a required contact does not
+    /// touch, because contacts begin and cease to touch only between steps.
     pub(super) fn margin(&self, inside: f64) -> f64 {
         if !self.is_touching {
             return f64::INFINITY;

@@ -30,7 +30,8 @@ pub(super) struct LocalReference {
 }
 
 /// Transformation of a row from `W'` to W at one instant. It contains the vector `s`, m, its first and second
-/// time derivatives, the mass of the robot, kg, and the state of the reference orbit of W.
+/// time derivatives, the mass of the robot, kg, the state of the reference orbit of W, and the corrections of
+/// impulse and work in [`LocalReference`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shift {
     /// State of the reference orbit of W.

@@ -138,7 +138,7 @@ impl<S: Scalar> RunState<'_, S> {
         result
     }
 
-    /// Computes the current step up to the current time, where the next step then begins.
+    /// Ends the current step at the current time, so that the next step begins there.
     pub(super) fn cut_at_current_time(&mut self) -> Result<(), SimulationError> {
         while self.schedule.is_later(self.time, self.schedule.now()) {
             let Some((interval, after)) = self.schedule.following() else { break };

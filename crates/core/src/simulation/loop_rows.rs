@@ -68,7 +68,8 @@ impl<S: Scalar> RunState<'_, S> {
         self.loop_rows = rows;
     }
 
-    /// Returns the values of a column of loops of a system; zeros if its loop is not closed.
+    /// Returns the values of the loop that a column of a system records; zeros if this loop is not closed.
+    /// `column` is the index among the columns of loops, and `rows` contains the values of all loops.
     fn values_of_loop(&self, system: usize, column: usize, rows: &[LoopRow]) -> [f64; 11] {
         let EquationsOfMotion { trees, members, .. } = &self.equations;
         let tree = members.tree_at(members.places[system]);
@@ -96,8 +97,8 @@ impl<S: Scalar> RunState<'_, S> {
     }
 }
 
-/// Returns the names of the closed loops that the trace of a system records: those of its model, and the
-/// captures by it that connect systems which other captures may also connect.
+/// Returns the names of the closed loops that the trace of a system records: the loops of its model, and the
+/// captures by the system that may close a loop because other captures may connect the same two systems.
 pub(super) fn recorded_loops(number: usize, model: &Model, events: &[Event]) -> Vec<String> {
     let is_loop = |closure: &&Closure| matches!(closure.constraint, Constraint::Frames { .. });
     let own = model.closures().iter().filter(is_loop).map(|closure| closure.name.clone());

@@ -158,7 +158,7 @@ impl<'a, S: Scalar> Part<'a, S> {
         self.state.work = energy + self.work_ahead;
     }
 
-    /// Returns the state from which [`Part::restore`] continues.
+    /// Returns the state that [`Part::restore`] restores.
     pub(super) fn save(&self) -> SavedPart {
         SavedPart {
             state: self.state.map(|x| x.value()),
@@ -175,7 +175,7 @@ impl<'a, S: Scalar> Part<'a, S> {
         self.dissipated_before = S::of(saved.dissipated_before);
     }
 
-    /// Returns those parts of the system that loads read and write.
+    /// Returns the data of the system that the computation of external wrenches reads and writes.
     pub(super) fn loaded(&mut self) -> LoadedSystem<'_, S> {
         self.own.loaded(&self.state.q)
     }

@@ -24,7 +24,7 @@ fn motion(model: &Model, q: &[f64], v: &[f64], frame: usize) -> TaskSample<f64> 
 }
 
 impl Simulation {
-    /// Sets the motion of the frames in which references are given, at the initial state.
+    /// Sets the motion of the frames in which references are given to that at the initial state.
     ///
     /// # Errors
     /// [`WorldError::ReferenceFrame`] for a frame that does not exist, and [`WorldError::OwnReferenceFrame`]
@@ -49,8 +49,8 @@ impl Simulation {
 }
 
 impl<S: Scalar> RunState<'_, S> {
-    /// Sets the motion of the frames in which references are given, at the current state or, if
-    /// `is_within_step`, at the state in the row buffer.
+    /// Sets the motion of the frames in which references are given to that at the current state or, if
+    /// `is_within_step`, to that at the state in the row buffer.
     pub(super) fn update_moving_frames(&self, is_within_step: bool) {
         let state = if is_within_step { &self.row_buffers.0 } else { &self.state };
         for (place, moving) in &self.moving_frames {

@@ -93,7 +93,7 @@ impl<'a, S: Scalar> RunState<'a, S> {
         self.find_known()
     }
 
-    /// Sets the places of the frames of the contacts in the trees.
+    /// Sets, for every frame of a contact, the index of its tree and its index in the model of that tree.
     fn place_contacts(&mut self) {
         let mut contacts = std::mem::take(&mut self.equations.contacts);
         contacts.place(|place| self.frame_in_tree(place));

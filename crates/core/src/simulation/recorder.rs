@@ -143,8 +143,8 @@ impl Recorder {
     }
 
     /// Adds a row at `t`, s, for a state whose kinematics are in `system`. `orbit` is the state of the
-    /// reference orbit, and `desired` the desired motion of the tool, with true if it is relative to the
-    /// base. [`Recorder::record_acceleration`] must then complete the row.
+    /// reference orbit, and `desired` the desired motion of the tool together with a flag that is true if the
+    /// motion is relative to the base. [`Recorder::record_acceleration`] must then complete the row.
     pub(super) fn record_state<S: Scalar>(
         &mut self,
         t: f64,
@@ -206,7 +206,8 @@ impl Recorder {
         }
     }
 
-    /// Replaces the force and the power of the contact `name` in the last row by those in `done`.
+    /// Replaces the force and the power of the contact `name` in the last row by those in `done`, the output
+    /// of an external engine.
     pub(super) fn record_contact_force(&mut self, name: &str, done: &ContactOutput) {
         let part = |name: &str| CONTACTS.parts.iter().find(|part| part.name == name).map(|part| part.start);
         let column = self.trace.contacts.iter_mut().find(|column| column.name == name);

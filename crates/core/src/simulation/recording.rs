@@ -28,7 +28,7 @@ impl Recording {
         systems.remove(0)
     }
 
-    /// Returns the number of rows of the first system.
+    /// Returns the number of rows in the trace of the first system.
     pub fn rows(&self) -> usize {
         self.systems.first().map_or(0, Trace::rows)
     }
@@ -121,7 +121,8 @@ pub const AUDIT: f64 = 1e-11;
 
 impl EventRecord {
     /// Returns the checks of the audit. The checks of relative velocities apply only to captures. Touch-downs
-    /// and lift-offs have no checks: their momentum and energy are those of the group at every row.
+    /// and lift-offs have no checks, because the balances of the group contain their momentum and energy at
+    /// every row.
     pub fn checks(&self) -> Vec<Check> {
         if self.kind.is_of_contact() {
             return Vec::new();
@@ -145,7 +146,7 @@ impl EventRecord {
     }
 }
 
-/// Rows and events of one group.
+/// Traces, events and balances of one group.
 #[derive(Clone, Debug, Default)]
 pub(super) struct GroupRecording {
     pub(super) systems: Vec<Trace>,

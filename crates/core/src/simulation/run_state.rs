@@ -82,7 +82,8 @@ pub(super) struct RunState<'a, S> {
     /// Distance of the base from the origin of W beyond which a system changes to a local reference orbit, m.
     pub(super) rereference_beyond: f64,
     pub(super) earth: Option<Arc<Earth>>,
-    /// Loops that have been in a singular configuration since the run was started or resumed.
+    /// Closed loops and mimic joints that have been in a singular configuration since the run was started or
+    /// resumed.
     pub(super) singular_loops: Vec<SingularLoop>,
 }
 

@@ -30,7 +30,7 @@ pub(super) struct RunSystem<'a, S> {
     pub(super) known_members: Vec<Member>,
     /// Error estimates of the previous trees that contained the system; `None` if its tree has never changed.
     pub(super) settled: Option<Estimates>,
-    /// Brakes, whose fields `is_engaged` are up to date.
+    /// Brakes of the system, whose fields `is_engaged` have the current state.
     pub(super) brakes: Vec<Brake>,
 }
 

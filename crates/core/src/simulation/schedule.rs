@@ -8,8 +8,8 @@ pub(super) const SAME_INSTANT: f64 = 1e-9;
 /// Longest interval of an adaptive run without a planned end, as a multiple of the regular step.
 pub(super) const LONGEST_INTERVAL: f64 = 1e6;
 
-/// Interval between two cuts. A fixed-step integrator covers it in one step, an adaptive integrator possibly
-/// in several.
+/// Interval between two cuts. A fixed-step integrator covers it in one step unless an event, a contact or a
+/// change of mode ends the step early; an adaptive integrator may need several steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Interval {
     /// Start of the interval, s.
@@ -223,8 +223,8 @@ impl Schedule {
     /// Returns the interval that begins at the current cut, and the position at its end; `None` at the
     /// planned end of the run.
     ///
-    /// If the last grid point equals the planned end within the tolerance for comparing instants, the run ends
-    /// at the grid point, so that its cuts are those of a run without a planned end. In floating point,
+    /// If the last grid point equals the planned end within the tolerance for comparing instants, the run
+    /// ends at the grid point, so that its cuts are those of a run without a planned end. In floating point,
     /// `140 · 0.005` differs from `0.7`.
     #[inline]
     pub(super) fn following(&self) -> Option<(Interval, Cursor)> {

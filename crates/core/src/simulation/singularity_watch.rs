@@ -41,10 +41,10 @@ struct WatchedRow {
 }
 
 impl SingularityWatch {
-    /// Returns the indices of the rows that have become singular, each with the time, s, from the `pivots` of
-    /// all rows at `t`, s. The pivots depend on which joints are `kept` at rest, so a change of these joints
-    /// restarts the detection. A start in a singular configuration is recognized only after the run has left
-    /// it.
+    /// Returns the indices of the rows that have become singular, each with the time of its smallest pivot,
+    /// s. `pivots` has the pivots of all rows at `t`, s. The pivots depend on which joints are `kept` at
+    /// rest, so a change of these joints restarts the detection. A start in a singular configuration is
+    /// recognized only after the run has left it.
     pub(super) fn update(
         &mut self,
         t: f64,

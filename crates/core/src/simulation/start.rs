@@ -45,8 +45,10 @@ impl Simulation {
         self.start_from(duration, None, usize::MAX)
     }
 
-    /// Starts or resumes a run whose caller removes rows with [`Stepper::drop_checked_rows`]: memory is
-    /// reserved for few rows only. The rows of `from` may be shortened by [`drop_checked_rows`](super::drop_checked_rows).
+    /// Starts a run, or resumes that of the checkpoint and the rows `from`, whose caller removes rows with
+    /// [`Stepper::drop_checked_rows`]. Memory is reserved for few rows only. The rows in `from` may already
+    /// be shortened by [`drop_checked_rows`](super::drop_checked_rows). `duration` is the planned end of the
+    /// run, s, as in [`Simulation::start`] and [`Simulation::resume`].
     ///
     /// # Errors
     /// The errors of [`Simulation::start`] and [`Simulation::resume`].

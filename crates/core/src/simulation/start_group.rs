@@ -306,7 +306,8 @@ impl Shared {
         let clocks = systems.iter().map(clock).collect();
         let schedule =
             Schedule::new(self.time_step, duration, clocks, effects.chain(jumps).chain(times).collect());
-        // the conditions of latches and contacts are evaluated at the ends of steps, which must therefore not be too long
+        // the conditions of latches and contacts are evaluated at the ends of steps, which must therefore not
+        // be too long
         let has_latches = events.iter().any(|event| matches!(event.when, When::Latch(_)));
         if self.is_adaptive() && !has_latches && self.contacts.is_empty() {
             schedule.without_grid_steps()
@@ -379,8 +380,8 @@ fn events_of(numbers: &[usize], events: &[Event]) -> Events {
     Events::new(own.iter().map(renumbered).collect(), own.clone())
 }
 
-/// Returns a unique column name for each effect: its name, with `_2`, `_3`, … appended if the name is already
-/// used.
+/// Returns a unique column name for each effect: its name with underscores instead of spaces, to which `_2`,
+/// `_3`, … is appended if the name is already used.
 pub(super) fn column_names(effects: &[Arc<dyn Effect>]) -> Vec<String> {
     let mut names: Vec<String> = Vec::with_capacity(effects.len());
     for effect in effects {

@@ -43,7 +43,7 @@ impl<S: Scalar> RunState<'_, S> {
     /// Computes kinematics, events, impacts, loads, controllers and modes at the start of a step in
     /// `interval` whose planned end is `end`, s. The function also prepares the last row, which no step
     /// follows. Returns the end of the step, s, which is earlier than `end` if an event has become due within
-    /// the interval, or while bodies touch.
+    /// the interval, and may be earlier while bodies touch or approach each other.
     pub(super) fn begin(&mut self, interval: &Interval, end: f64) -> Result<f64, SimulationError> {
         let t = interval.start;
         // 1 kinematics, and the base twist projected onto the momentum
@@ -67,8 +67,8 @@ impl<S: Scalar> RunState<'_, S> {
         }
         // 4 loads of the environment, 5 controllers that are due
         self.loads_and_controllers(interval, end)?;
-        // 6 which joints stick, slip or rest at a stop during the step, and the forces between rigid bodies at
-        // rest
+        // 6 which joints stick, slip or rest at a stop during the step, and the forces between rigid bodies
+        // at rest
         self.mover.solve_modes(&mut self.equations, &self.state);
         if self.mover.hold_contacts(&mut self.equations, &mut self.state, (t, end))? {
             self.take_touches();
@@ -223,8 +223,8 @@ impl<S: Scalar> RunState<'_, S> {
     }
 
     /// Returns the error with which a step from `t`, s, ends, after replacing errors that are consequences of
-    /// divergence. If the state is not finite, an error such as the overflow of a torque, or the evaluation
-    /// of an orbit or effect at a non-finite position, becomes [`SimulationError::Diverged`].
+    /// divergence. The overflow of a torque, and any error while the state is not finite, such as that of an
+    /// orbit or effect at a non-finite position, becomes [`SimulationError::Diverged`].
     pub(super) fn name_divergence(&self, error: SimulationError, t: f64) -> SimulationError {
         let is_overflow = matches!(&error, SimulationError::Control(ControlError::Overflow { .. }));
         if is_overflow || self.mover.first_diverged(&self.state).is_some() { self.diverged(t) } else { error }

@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 /// Run that the caller advances; see [`Simulation::start`](super::Simulation::start).
 ///
 /// The steps are those of [`Simulation::run`](super::Simulation::run), independent of the times to which the
-/// run is advanced.
+/// run is advanced. Only torque commands, wrench commands and triggered events end a step early.
 pub struct Stepper<'a> {
     pub(super) groups: Vec<Group<'a>>,
     /// Index of the group of each system, and index of the system in the group.
@@ -90,8 +90,8 @@ impl<'a> Stepper<'a> {
         self.advance_until(t, &mut |_| ControlFlow::Continue(())).map(|_| ())
     }
 
-    /// Advances the run like [`Stepper::advance_to`], but stops at the end of a step if the monitor returns
-    /// `Break`. Returns `Break` if the monitor has stopped the advance.
+    /// Advances the run like [`Stepper::advance_to`], but stops at the time passed to the monitor if the
+    /// monitor returns `Break`. Returns `Break` if the monitor has stopped the advance.
     ///
     /// # Errors
     /// The errors of [`Stepper::advance_to`].

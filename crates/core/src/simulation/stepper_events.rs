@@ -46,7 +46,7 @@ impl Stepper<'_> {
     }
 
     /// Returns the closed loops and mimic joints that have been in, or near, a singular configuration since
-    /// the run was started or resumed, each with the first time.
+    /// the run was started or resumed, each with the time at which this first happened, s.
     pub fn singular_loops(&self) -> Vec<SingularLoop> {
         self.groups.iter().flat_map(|group| group.run.singular_loops().iter().cloned()).collect()
     }

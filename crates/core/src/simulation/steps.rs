@@ -51,7 +51,7 @@ pub(super) trait Steps: Send {
     fn records(&self) -> &[EventRecord];
     /// Returns the controls whose frames are rigidly connected to the frames that they follow.
     fn attached_controls(&self) -> Vec<AttachedControl>;
-    /// Returns the closed loops that have been in a singular configuration.
+    /// Returns the closed loops and mimic joints that have been in a singular configuration.
     fn singular_loops(&self) -> &[SingularLoop];
     /// Returns the index of the event with this name if it can be triggered; `None` if the group has no such
     /// event.
@@ -60,7 +60,7 @@ pub(super) trait Steps: Send {
     fn checkpoint(&self) -> Result<GroupCheckpoint, SimulationError>;
     fn rows(&self, system: usize) -> &Trace;
     /// Removes all rows of each system except the first one and the last `keep`; if `is_checked`, the
-    /// certificate still includes them.
+    /// certificate still includes the removed rows.
     fn drop_rows(&mut self, keep: usize, is_checked: bool);
     fn recording(&mut self) -> Result<GroupRecording, SimulationError>;
     /// Returns the row of each system at the current time.

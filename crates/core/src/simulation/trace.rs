@@ -20,7 +20,8 @@ macro_rules! define_trace {
                 #[doc = concat!($meaning, " Shape ", stringify!(($($axis),+)), ", unit ", $unit, ".")]
                 pub $name: Vec<f64>,
             )+
-            /// Tracking errors of the controls, m and rad, one column per control; see [`TRACKING`].
+            /// Tracking errors of the controls, m and rad or, for a grip force, N, one column per control;
+            /// see [`TRACKING`].
             pub tracking: Vec<NamedColumn>,
             /// Wrenches of the effects on every body, one column per effect; see [`WRENCHES`].
             pub wrenches: Vec<NamedColumn>,
@@ -48,8 +49,9 @@ macro_rules! define_trace {
             /// Results of the checks that compare successive steps, evaluated during a fixed-step run if its
             /// rows are not sufficient; `None` otherwise.
             pub pair_checks: Option<PairChecks>,
-            /// True if the rows are sufficient for the checks that compare successive steps: every step is
-            /// recorded, and no capture can make the system a part of a larger tree.
+            /// True if the rows are sufficient for the checks that compare successive steps: every step of a
+            /// fixed-step run is recorded and, unless an external engine moves the system, its group has
+            /// neither events nor contacts with friction.
             pub rows_suffice: bool,
             /// Checks of the rows that were removed during the run; `None` if no rows were removed, or if
             /// they were not checked.
@@ -129,7 +131,8 @@ pub struct CoordinateDrift {
 }
 
 impl CoordinateDrift {
-    /// Combines the differences over two successive intervals: `before`, and this one.
+    /// Returns the error estimates over two successive intervals, of which `before` has those of the first
+    /// and `self` those of the second.
     pub(super) fn after(&self, before: &Self) -> Self {
         Self {
             position: self.position + before.position,
@@ -147,8 +150,8 @@ pub struct GoalResult {
     pub name: String,
     /// Outcome of the goal.
     pub outcome: Outcome,
-    /// Component whose error was too large: the name of a joint, `position` or `attitude`; `None` if no error
-    /// was too large.
+    /// Component whose error was too large: the name of a joint, `position`, `attitude` or `force`; `None` if
+    /// no error was too large.
     pub component: Option<String>,
 }
 
@@ -163,7 +166,7 @@ impl Trace {
         self.rows() + self.removed.as_ref().map_or(0, |removed| removed.rows())
     }
 
-    /// Returns true if every column has the same number of values in each row.
+    /// Returns true if the trace has rows and every column has the same number of values in each of them.
     pub fn has_all_values(&self) -> bool {
         let rows = self.rows();
         rows > 0 && self.columns().all(|(_, column)| column.len() % rows == 0)

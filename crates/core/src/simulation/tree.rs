@@ -75,7 +75,7 @@ impl<'a, S: Real> Tree<'a, S> {
         }
     }
 
-    /// Adds brakes to the joints of the tree.
+    /// Adds brakes to the joints of the tree and engages those that are initially engaged.
     pub(super) fn with_brakes(mut self, brakes: &[Brake]) -> Self {
         if brakes.is_empty() {
             return self;
@@ -282,9 +282,9 @@ impl<'a, S: Real> Tree<'a, S> {
     }
 
     /// Computes the generalized forces at the joints, N m or N, `τ − k d − k₃ d³ − b q̇ − f s`, with the
-    /// commanded torque `τ`, the stiffnesses `k` and `k₃` and the deflection `d` of the spring, the damping `b`,
-    /// the Coulomb friction `f` and the direction of slip `s`, and writes them to `forces`. The friction `f s`
-    /// is omitted for joints whose motors compensate it.
+    /// commanded torque `τ`, the stiffnesses `k` and `k₃` and the deflection `d` of the spring, the damping
+    /// `b`, the Coulomb friction `f` and the direction of slip `s`, and writes them to `forces`. The friction
+    /// `f s` is omitted for joints whose motors compensate it.
     pub(super) fn update_joint_forces(&mut self, q: &[S], v: &[S]) {
         let Self { model, modes, command, forces, is_lossy, springs, .. } = self;
         forces[BASE_NV..].copy_from_slice(command);

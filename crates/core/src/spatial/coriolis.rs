@@ -1,4 +1,4 @@
-//! Derivative of the bias force of a body with respect to the twist of its parent.
+//! Coriolis operator of rigid bodies, from which the derivatives of the equations of motion are computed.
 
 use super::inertia::SpatialInertia;
 use super::mat3::Mat3;
@@ -10,9 +10,9 @@ use std::ops::AddAssign;
 /// Coriolis operator `2B = v×* I − I v× + (I v) ×̄*` of one or several bodies with inertia `I` and twist `v`,
 /// where `f ×̄* m = m ×* f`.
 ///
-/// For a motion `m`, `2B m` is twice the Coriolis force summed over all points `r` of the body: with
-/// `p = ∫ ṙ dm` and `N = ∫ ṙ rᵀ dm`, `2B m = (2 ω × p, 2 (tr N ω − N ω))`. It depends only on the angular
-/// half `ω` of `m`.
+/// For a motion `m` with the angular half `ω`, `2B m` is the force `2 ω × ṙ dm` summed over all points `r` of
+/// the body: with `p = ∫ ṙ dm` and `N = ∫ ṙ rᵀ dm`, `2B m = (2 ω × p, 2 (tr N ω − N ω))`. It does not depend
+/// on the linear half of `m`.
 ///
 /// Source: Singh, Russell and Wensing, IEEE Robotics and Automation Letters 7(2), 2022.
 #[derive(Clone, Copy, Debug, Default)]

@@ -44,7 +44,7 @@ impl<S: Real> Mat3<S> {
         Self::from_columns(Vec3::zero(), Vec3::zero(), Vec3::zero())
     }
 
-    /// Returns the matrix `m` in every lane.
+    /// Creates the matrix with `m` in every lane.
     #[inline(always)]
     pub fn of(m: &Mat3<f64>) -> Self {
         Self::from_columns(Vec3::of(&m.x), Vec3::of(&m.y), Vec3::of(&m.z))

@@ -1,8 +1,8 @@
-//! Spatial algebra for a generic scalar (vectors, rotations, motions, forces and inertias), curves through given
-//! points, and the choice of the instruction set.
+//! Spatial algebra for a generic scalar (vectors, rotations, motions, forces and inertias), curves through
+//! given points, and the choice of the instruction set.
 //!
-//! The algebraic types are plain data with `#[inline(always)]` methods, so that the arithmetic is compiled for the
-//! instruction set of the kernel that uses it. Linear parts precede angular parts.
+//! The algebraic types are plain data with `#[inline(always)]` methods, so that the arithmetic is compiled
+//! for the instruction set of the kernel that uses it. Linear parts precede angular parts.
 
 mod articulated;
 mod coriolis;

@@ -177,10 +177,10 @@ pub fn log_rotation<S: Real>(r: &Mat3<S>) -> Vec3<S> {
 /// Returns the time derivative of the rotation vector `θ` in `R = R₀ exp(θ)` for the angular velocity `ω` in
 /// body axes: `θ̇ = ω + ½ θ×ω + b θ×(θ×ω)`.
 ///
-/// `b = 1/12 + |θ|²/720` truncates the inverse differential of the exponential. The error is of sixth order
-/// in `θ`, below the error of the integrators, for which `θ` is the rotation of one step. Because `ω` is in
-/// body axes, the result is `dexp⁻¹` of `−θ` in the convention of Hairer, Lubich and Wanner (section
-/// III.4.1).
+/// `b = 1/12 + |θ|²/720` truncates the series of the inverse differential of the exponential. The error is of
+/// sixth order in `θ`, below the error of the integrators, for which `θ` is the rotation of one step. Because
+/// `ω` is in body axes, the result is `dexp⁻¹` of `−θ` in the convention of Hairer, Lubich and Wanner
+/// (section III.4.1).
 ///
 /// Source: Munthe-Kaas, BIT 38, 1998.
 #[inline(always)]

@@ -5,7 +5,8 @@ use super::spline::{Ends, KnotInterval, Spline, SplineError, check_rows, check_t
 use super::vec3::Vec3;
 use nalgebra::{Matrix3, Vector3};
 
-/// Distance from half a turn, rad, within which the direction of rotation between two attitudes is ambiguous.
+/// Distance from half a turn, rad, within which the direction of rotation between two attitudes is treated as
+/// ambiguous.
 const HALF_TURN_MARGIN: f64 = 1e-6;
 
 /// Spline `R(t) = Rk exp(φ(t))` from each attitude `Rk` to the next, where `φ`, rad, is the quintic
@@ -33,8 +34,8 @@ impl RotationSpline {
     /// Creates the spline through the attitudes (K,) at `times` (K,), s, that is at rest at every attitude.
     ///
     /// # Errors
-    /// [`SplineError`] for fewer than two points, wrong lengths, times that do not increase, or successive
-    /// attitudes half a turn apart.
+    /// [`SplineError`] for fewer than two points, wrong lengths, numbers that are not finite, times that do
+    /// not increase, or successive attitudes half a turn apart.
     pub fn resting(times: &[f64], attitudes: &[Quat<f64>]) -> Result<Self, SplineError> {
         let zeros = vec![Vec3::zero(); attitudes.len()];
         Self::new(times, attitudes, &zeros, &zeros)

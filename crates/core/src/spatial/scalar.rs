@@ -30,10 +30,10 @@ pub trait Real:
     /// Number of lanes.
     const LANES: usize;
 
-    /// Returns the constant `x` in every lane.
+    /// Creates the scalar with the constant `x` in every lane.
     fn of(x: f64) -> Self;
 
-    /// Returns the number `f(i)` in lane `i`.
+    /// Creates the scalar with the number `f(i)` in each lane `i`.
     fn from_lanes(f: impl Fn(usize) -> f64) -> Self;
 
     /// Returns the number in lane `i`.
@@ -96,9 +96,9 @@ pub trait Real:
     /// Returns true if the mask is true in any lane; used to skip computations that no lane needs.
     fn any(mask: Self::Mask) -> bool;
 
-    /// Runs `kernel`, which computes several right-hand sides of the same equations, with a suitable scalar.
-    /// For a single state with fused arithmetic, the scalar has one right-hand side per lane. Otherwise it is
-    /// the scalar itself, with one right-hand side at a time.
+    /// Runs `kernel`, which solves the same equations for several right-hand sides, with a suitable scalar
+    /// type. For [`Fused`](super::Fused), this is a type with several lanes, which holds one right-hand side
+    /// per lane. For other scalars, it is `Self`, with one right-hand side at a time.
     #[inline(always)]
     fn solve_columns(kernel: impl ColumnKernel<Self>) {
         kernel.run(
@@ -114,10 +114,10 @@ pub trait Real:
     fn enter<R>(kernel: impl FnOnce() -> R) -> R;
 }
 
-/// Computation with several right-hand sides, one in each lane of `R`, for equations with coefficients in
-/// `S`.
+/// Solution of equations with coefficients of type `S` for several right-hand sides
+/// ([`Real::solve_columns`]).
 pub trait ColumnKernel<S> {
-    /// Runs the computation; `lift` returns a coefficient in every lane.
+    /// Runs the computation with right-hand sides of type `R`; `lift` converts a coefficient to `R`.
     fn run<R: Real>(self, lift: impl Fn(S) -> R + Copy);
 }
 

@@ -1,4 +1,4 @@
-//! Branch-free sine and cosine of scalars with several lanes.
+//! Branch-free sine and cosine of scalars with one or several lanes.
 
 use super::scalar::Real;
 

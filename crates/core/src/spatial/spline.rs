@@ -6,7 +6,7 @@ use thiserror::Error;
 
 /// Errors of points and times that do not define a curve.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[allow(missing_docs)] // the fields are what the messages say
+#[allow(missing_docs)] // the messages explain the fields
 pub enum SplineError {
     #[error(
         "'{name}' contains {value} at point {point}; it must be finite and within ±1e60 (SI units)",
@@ -40,8 +40,8 @@ pub enum Ends {
     Free,
 }
 
-/// Spline of quintic polynomials with given value, slope and curvature (first and second derivative) at K
-/// knots, which is C². A value has n components; arrays are row-major.
+/// C² spline of quintic polynomials with given values, slopes and curvatures (first and second derivatives)
+/// at K knots. A value has n components; arrays are row-major.
 ///
 /// The C² cubic spline is a special case. Outside the knots, the value of the nearest end is held.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,8 +57,8 @@ impl Spline {
     /// at the knots, where n is `width`.
     ///
     /// # Errors
-    /// [`SplineError`] for fewer than two points, wrong lengths, numbers that are not finite or exceed 1e60,
-    /// or times that do not increase.
+    /// [`SplineError`] for fewer than two points, wrong lengths, numbers that are not finite or exceed 1e60
+    /// in magnitude, or times that do not increase.
     pub fn new(
         times: &[f64],
         width: usize,
@@ -216,7 +216,8 @@ pub(super) fn check_times(times: &[f64]) -> Result<(), SplineError> {
     }
 }
 
-/// Checks that there are `points` rows of `width` finite numbers.
+/// Checks that there are `points` rows of `width` numbers, at least one, which are finite and at most 1e60 in
+/// magnitude.
 pub(super) fn check_rows(
     name: &'static str,
     rows: &[f64],

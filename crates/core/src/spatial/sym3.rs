@@ -46,7 +46,7 @@ impl<S: Real> Sym3<S> {
         Self::new(s, s, s, o, o, o)
     }
 
-    /// Returns the matrix `m` in every lane.
+    /// Creates the matrix with `m` in every lane.
     #[inline(always)]
     pub fn of(m: &Sym3<f64>) -> Self {
         Self::new(S::of(m.xx), S::of(m.yy), S::of(m.zz), S::of(m.xy), S::of(m.xz), S::of(m.yz))

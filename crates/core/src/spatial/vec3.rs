@@ -37,7 +37,7 @@ impl<S: Real> Vec3<S> {
         Self::new(S::of(0.0), S::of(0.0), S::of(0.0))
     }
 
-    /// Returns the vector `v` in every lane.
+    /// Creates the vector with `v` in every lane.
     #[inline(always)]
     pub fn of(v: &Vec3<f64>) -> Self {
         Self::new(S::of(v.x), S::of(v.y), S::of(v.z))

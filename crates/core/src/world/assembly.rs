@@ -19,7 +19,7 @@ pub struct Assembly {
     pub given: Vec<GivenJoint>,
 }
 
-/// System of a tree, with the places of its joints and bodies in the tree.
+/// System of a tree, and the places of its joints and bodies in the tree.
 #[derive(Clone, Debug)]
 pub struct Member {
     /// Index of the system in the world.

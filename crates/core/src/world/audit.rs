@@ -1,10 +1,11 @@
-//! Momentum and energy of one system, computed with the system's own model, for the audit of an event.
+//! Momentum and energy of one system, computed from the model of this system alone, for the audit of an
+//! event.
 
 use crate::dynamics::{Data, base_rotation, kinematics, kinetic_energy};
 use crate::model::Model;
 use crate::spatial::{Force, Motion, Scalar, Vec3};
 
-/// Speed below which a body is treated as at rest, m/s. It keeps the scales of momentum above zero.
+/// Smallest speed, m/s, from which the linear scale of a body is computed, so that no scale is zero.
 const REST: f64 = 1e-9;
 /// Smallest angular scale of a body, relative to `|r| |p| + |H|`, because `r × p` and `H` may cancel; `r` is
 /// the arm from the reference point to the body's origin, `p` the linear momentum, and `H` the angular
@@ -68,7 +69,7 @@ impl Balance {
         )
     }
 
-    /// Adds the momentum of another system about the same point.
+    /// Adds the momentum about the same point, and the scales, of another system.
     pub fn add(&mut self, other: &Self) {
         self.momentum += other.momentum;
         self.scales = [0, 1].map(|i| self.scales[i] + other.scales[i]);

@@ -9,9 +9,9 @@
 pub struct Brake {
     /// Name, which is unique among the brakes of the system.
     pub name: String,
-    /// Index of the joint among those of the system.
+    /// Index of the joint among the joints of the system.
     pub joint: usize,
-    /// Largest torque that the brake can hold, N m (N for a prismatic joint); may be infinite.
+    /// Largest torque that the brake can exert, N m (N for a prismatic joint); may be infinite.
     pub slip_torque: f64,
     /// True if the brake is engaged at the start.
     pub is_engaged: bool,

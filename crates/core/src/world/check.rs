@@ -63,7 +63,8 @@ pub fn check_events(systems: &[System], events: &[Event]) -> Result<(), WorldErr
     events.iter().try_for_each(|event| check_merged(systems, event))
 }
 
-/// Checks that a capture of two systems produces a valid model. The pose at the capture does not matter.
+/// Checks that a capture of two systems produces a valid model. Its validity does not depend on the pose
+/// at the capture.
 fn check_merged(systems: &[System], event: &Event) -> Result<(), WorldError> {
     let Action::Capture { by, of, .. } = event.action else { return Ok(()) };
     let [near, far] = [by, of].map(|place| &systems[place.system].model);

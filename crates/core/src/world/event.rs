@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Frame of a system, given by two indices.
+/// Frame of a system, identified by two indices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FrameIndex {
     /// Index of the system in the world.
@@ -11,12 +11,12 @@ pub struct FrameIndex {
     pub frame: usize,
 }
 
-/// Brake of a system, given by two indices.
+/// Brake of a system, identified by two indices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BrakeIndex {
     /// Index of the system in the world.
     pub system: usize,
-    /// Index among the brakes of the system.
+    /// Index of the brake among the brakes of the system.
     pub brake: usize,
 }
 
@@ -35,7 +35,7 @@ pub struct Event {
 /// Condition under which an event happens.
 #[derive(Clone, Debug, PartialEq)]
 pub enum When {
-    /// At the given time, s.
+    /// At the given simulation time, s.
     At(f64),
     /// After a delay that begins when another event happens.
     After {
@@ -52,8 +52,8 @@ pub enum When {
 }
 
 impl When {
-    /// Returns the time at which an event is scheduled to happen, s; `None` if that depends on the run or on
-    /// other events.
+    /// Returns the time at which an event is scheduled to happen, s; `None` if this time depends on the
+    /// run or on other events.
     pub fn time(&self) -> Option<f64> {
         match self {
             Self::At(t) => Some(*t),
@@ -62,8 +62,8 @@ impl When {
     }
 }
 
-/// Conditions under which a latch closes: limits of the distance and of the relative velocity of its frames,
-/// and contacts that must touch.
+/// Conditions under which a latch closes: limits of the distance, angle and relative velocity of the two
+/// frames of its capture, and contacts that must touch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Envelope {
     /// Largest distance and angle between the frames, m and rad.
@@ -86,8 +86,8 @@ pub enum Action {
         by: FrameIndex,
         /// Captured frame.
         of: FrameIndex,
-        /// Motion of the captured frame to a nominal pose after the capture; `None` to keep the relative pose
-        /// at the capture.
+        /// Motion of the captured frame to a nominal pose after the capture; `None` if the relative pose
+        /// at the capture is kept.
         seat: Option<Seat>,
     },
     /// Removes the connection that a capture established.
@@ -118,7 +118,7 @@ pub struct Seat {
 pub struct RigidPose {
     /// Rotation from axes of this frame to axes of the other frame, as a quaternion (x, y, z, w).
     pub rotation: [f64; 4],
-    /// Origin in the other frame, m.
+    /// Position of the origin of this frame in the other frame, m.
     pub position: [f64; 3],
 }
 

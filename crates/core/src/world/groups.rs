@@ -3,7 +3,8 @@
 
 use super::event::{Action, Event, When};
 
-/// Union-find structure: sets of numbers that are joined one pair at a time.
+/// Union-find structure: disjoint sets of the numbers from 0 to `count − 1`, which are joined two at a
+/// time.
 pub(super) struct Union {
     parent: Vec<usize>,
 }

@@ -1,5 +1,5 @@
-//! Impulses: the velocities of systems at the instant at which they are connected, and the response to an
-//! impulse.
+//! Velocity of a tree immediately after its systems have been connected, impulses of its closed loops, and
+//! the response of a robot to an impulse.
 
 use super::assembly::Member;
 use crate::dynamics::{
@@ -13,7 +13,7 @@ use crate::spatial::{Force, Vec3};
 pub struct Moving<'a> {
     /// Place of the system in the tree.
     pub member: &'a Member,
-    /// Model of the system by itself.
+    /// Model of the system alone.
     pub model: &'a Model,
     /// Configuration, `(nq,)`, m and rad.
     pub q: &'a [f64],

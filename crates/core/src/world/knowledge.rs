@@ -1,11 +1,11 @@
-//! Detection of entries of `knows` that have no effect.
+//! Detection of entries of [`System::knows`] that have no effect.
 
 use super::event::{Action, Event};
 use super::groups::Union;
 use super::system::System;
 
-/// Entry of `knows` without effect, because captures connect the two systems only through systems that are
-/// not known, or not at all.
+/// Entry of [`System::knows`] that has no effect, because captures connect the two systems only through
+/// systems that are not known, or not at all.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct IdleKnowledge {
     /// Index of the system whose controllers know the other system.
@@ -17,7 +17,7 @@ pub struct IdleKnowledge {
     pub through: Vec<usize>,
 }
 
-/// Returns those entries of `knows` that have no effect, whatever events happen.
+/// Returns the entries of [`System::knows`] that have no effect, whatever events happen.
 pub fn idle_knowledge(systems: &[System], events: &[Event]) -> Vec<IdleKnowledge> {
     let pairs: Vec<[usize; 2]> = events
         .iter()

@@ -1,9 +1,10 @@
-//! Index ranges of systems and joints, found by name, in vectors that hold the coordinates of all systems.
+//! Index ranges of systems in vectors that hold the coordinates of all systems, and indices of systems and
+//! joints by name.
 
 use crate::model::Model;
 use std::ops::Range;
 
-/// Maps the names of systems and of their joints to indices.
+/// Index ranges of all systems, and indices of systems and their joints by name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Layout {
     systems: Vec<SystemPlace>,
@@ -26,7 +27,7 @@ pub struct SystemPlace {
 }
 
 impl Layout {
-    /// Creates the layout of these systems, given by name and model, in this order.
+    /// Creates the layout of systems, which are given by name and model, in the given order.
     pub fn new<'a>(systems: impl IntoIterator<Item = (&'a str, &'a Model)>) -> Self {
         let (mut q, mut v, mut tau) = (0, 0, 0);
         let place = |(name, model): (&str, &Model)| SystemPlace {

@@ -1,4 +1,4 @@
-//! World of several systems, the events that connect and separate them, and the trees that welds form.
+//! World of one or more systems, the events that connect and separate them, and the trees that welds form.
 
 mod assembly;
 mod audit;

@@ -32,12 +32,13 @@ impl GivenJoint {
     }
 }
 
-/// Smallest number of steps into which a motion is divided, so that a fixed-step integrator resolves it.
+/// Smallest number of steps into which a seating motion is divided, so that a fixed-step integrator
+/// resolves it.
 const STEPS: usize = 64;
 
 impl Seating {
-    /// Returns the times at which steps must end, s: the end of the motion and, if the motion is shorter than
-    /// 64 steps of length `time_step`, s, equally spaced times within it.
+    /// Returns the times at which steps must end, s: the end of the motion and, if the motion is shorter
+    /// than 64 steps of length `time_step`, s, 63 equally spaced times within it.
     pub fn cuts(&self, time_step: f64) -> impl Iterator<Item = f64> + use<> {
         let Self { start, duration, .. } = *self;
         let parts = if duration < STEPS as f64 * time_step { STEPS } else { 1 };
@@ -65,8 +66,8 @@ impl Weld {
         self.seating.map(|seating| seating.start + seating.duration)
     }
 
-    /// Returns the connection from the capturing frame to the captured frame or, if `is_reversed`, in the
-    /// opposite direction. `name` is the prefix of the names of its joints.
+    /// Returns the connection from the capturing frame to the captured frame or, if `is_reversed` is true,
+    /// in the opposite direction. `name` is the prefix of the names of its joints.
     ///
     /// `X(s) = (p₀ + s d, exp(s θ n) R₀)` is the pose (position `p`, rotation `R`) of the captured frame in
     /// the capturing frame at the fraction `s` of the motion, with `d = p₁ − p₀` and `exp(θ n) = R₁ R₀ᵀ`; the

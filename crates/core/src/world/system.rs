@@ -1,4 +1,4 @@
-//! System of a world: one robot with its initial state and its controls.
+//! System of a world: one robot with its initial state, controls and brakes.
 
 use super::brake::Brake;
 use crate::control::Control;
@@ -6,7 +6,7 @@ use crate::model::Model;
 use crate::reference::{MovingFrame, TaskReference};
 use std::sync::Arc;
 
-/// System of a world, such as a spacecraft: its model, initial state and controls.
+/// System of a world, such as a spacecraft: its model, initial state, controls and brakes.
 pub struct System {
     /// Name, which is unique in the world.
     pub name: String,
@@ -21,7 +21,8 @@ pub struct System {
     /// Controls of the joints. A joint without an active control has no motor torque, unless the caller of a
     /// stepper commands one.
     pub controls: Vec<Control>,
-    /// Time between two updates of the controllers, s; `None` to update the controllers at every step.
+    /// Time between two updates of the controllers, s; `None` if the controllers are updated at every
+    /// step.
     pub control_period: Option<f64>,
     /// Index of the frame whose pose is recorded and compared with the reference; `None` for a system without
     /// a tool.
@@ -35,8 +36,8 @@ pub struct System {
     /// Indices in the world of the systems whose models the controllers know. While such a system is
     /// connected to this one, control laws use the model of the connected tree.
     pub knows: Vec<usize>,
-    /// Coefficient of restitution, from 0 to 1, of rigid stops at the position limits of joints; `None` for
-    /// no stops.
+    /// Coefficient of restitution, from 0 to 1, of rigid stops at the position limits of joints; `None` if
+    /// the joints have no stops.
     pub stops: Option<f64>,
     /// Brakes of joints.
     pub brakes: Vec<Brake>,
@@ -49,7 +50,7 @@ impl System {
         tracked.chain(&self.reference).filter_map(TaskReference::moving_frame)
     }
 
-    /// Creates a system without controls, tool, reference, stops and brakes.
+    /// Creates a system that has no controls, tool, reference, stops or brakes and knows no other system.
     pub fn new(name: &str, model: Arc<Model>, q: Vec<f64>, v: Vec<f64>) -> Self {
         Self {
             name: name.to_owned(),

@@ -1,4 +1,4 @@
-"""Controllers. A new control law is one file with two classes, each added to one of the unions below.
+"""Controllers of scenarios; a control law is one file with two classes, each in one of the unions below.
 
 ``docs/howto/controller.md``, "Add a law to the engine", lists the necessary changes in other folders.
 """

@@ -118,7 +118,7 @@ def _checked(law: Any, reference: Any, tool: str | None, scenario: Scenario, at:
 
 
 def _without_reference(law: ExternalController | GripForceController, reference: Any, at: Location) -> None:
-    """Raise an error for a reference, or another key without effect, of a law that uses no reference."""
+    """Raise an error if a law that uses no reference has one, or another key that would have no effect."""
     is_external = isinstance(law, ExternalController)
     why = "gets its motion from commands" if is_external else "grips with a given force"
     for key, given in [

@@ -21,7 +21,7 @@ class ComputedTorqueController(TaskLaw):
     kp: StiffnessGain = 100.0
     """Gain of the pose error, 1/s²: one number, six numbers, or a 6 x 6 matrix; linear first."""
     kd: RateGain = 20.0
-    """Gain of the velocity error, 1/s, in the form of ``kp``."""
+    """Gain of the velocity error, 1/s; one number, six numbers, or a 6 x 6 matrix; linear first."""
     damping: Annotated[Number, NotNegative] = 0.05
     """Largest damping of the pseudo-inverse, in the units of the singular values of the generalized Jacobian;
     the damping is zero unless a singular value is smaller than this number."""

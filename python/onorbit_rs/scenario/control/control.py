@@ -88,11 +88,11 @@ class TaskControl(Control):
     """Frame of a captured system, ``SYSTEM/FRAME``, that tracks the reference instead of the tool that holds
     it. The system of the tool must list the captured system in ``knows``."""
     goal: TaskGoal | None = None
-    """Goal; the summary of the run contains its result."""
+    """Goal of the control; the summary of the run contains its result."""
 
 
 class JointControl(Control):
     """Control of the joints of a group."""
 
     goal: JointGoal | None = None
-    """Goal; the summary of the run contains its result."""
+    """Goal of the control; the summary of the run contains its result."""

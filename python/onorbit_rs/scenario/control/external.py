@@ -30,8 +30,8 @@ class ExternalController(JointLaw):
     timeout: Annotated[Time, Positive] | None = None
     """Time without a command after which ``on_timeout`` applies. Default: never."""
     on_timeout: Literal["hold", "damp", "zero"] = "hold"
-    """``hold`` keeps the positions, ``damp`` brings the joints to rest with ``kd``, ``zero`` sets zero
-    torques."""
+    """Behaviour after a timeout: ``hold`` keeps the positions, ``damp`` brings the joints to rest with
+    ``kd``, and ``zero`` sets zero torques."""
     compensate_environment: bool = True
     """Whether the wrenches of the environment are compensated while positions or velocities are commanded."""
     compensate_friction: bool = True

@@ -1,4 +1,4 @@
-"""Checks of grippers before a run: fingers that approach each other, and an opening that fits."""
+"""Checks before a run that the fingers of a gripper approach each other and open wide enough."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 _MOTION = 1e-5
-"""Motion of the joints for the test of which links approach each other, rad or m."""
+"""Displacement of the joints with which the approach of links to each other is tested, rad or m."""
 _CLOSER = 1e-3
 """Smallest decrease of a distance, relative to the motion, that counts as an approach."""
 
@@ -157,7 +157,7 @@ def _sides(contact: Contact, models: Mapping[str, _core.Model]) -> list[set[tupl
 
 
 def _widths(model: _core.Model, link: str) -> list[float]:
-    """Return the smallest width of each collision shape of a link, m; zero for shapes of other kinds."""
+    """Return the smallest width of each collision shape of a link, m; zero if the width is not known."""
     return [_width(shape.kind, shape.size) for shape in model.collisions if shape.link == link]
 
 

@@ -27,11 +27,11 @@ class GripForceController(Law):
     force: Annotated[Force, Positive]
     """Desired mean of the normal forces of the fingers."""
     closing_rate: JointRates
-    """Rate of the joints until all fingers touch; the sign is that of the closing motion."""
+    """Rate of the joints until all fingers touch, rad/s or m/s; the sign is that of the closing motion."""
     damping: JointNumber
-    """Damping, N m s/rad, or N s/m for prismatic joints."""
+    """Damping of the joints, N m s/rad, or N s/m for prismatic joints."""
     ramp: Annotated[Time, NotNegative] = 0.5
-    """Time that an increase of the desired force from zero to ``force`` takes."""
+    """Time in which the desired force increases from zero to ``force``."""
     integral: Annotated[Rate, NotNegative] = 5.0
     """Gain of the integral of the force error, 1/s."""
     stiffness: JointNumber = 0.0
@@ -74,4 +74,4 @@ class GripForceControl(GripForceController, Control):
     """Control of a group of joints that closes the fingers of a gripper to a given force."""
 
     goal: ForceGoal | None = None
-    """Goal; the summary of the run contains its result."""
+    """Goal of the grip; the summary of the run contains its result."""

@@ -33,7 +33,7 @@ class InitialMobility:
         return len(joint_columns(law, self.model.joint_names))
 
     def of_joints(self, law: Any) -> Floats:
-        """Return `(Mmm - Mmb Mbb⁻¹ Mbm)⁻¹` for the joints `m` of a law; the other joints are fixed.
+        """Return the mobility `(Mmm - Mmb Mbb⁻¹ Mbm)⁻¹` of the joints `m` of a law; other joints are fixed.
 
         The blocks are those of the mass matrix; `b` is the base.
 

@@ -66,7 +66,7 @@ class JointLaw(Law):
 
 
 def arguments(**values: Any) -> dict[str, Any]:
-    """Return the keyword arguments for the engine: lists become arrays, None is omitted."""
+    """Return keyword arguments for the engine: lists are converted to arrays, and None is omitted."""
     return {
         name: np.array(value) if isinstance(value, list) else value
         for name, value in values.items()

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def check_load(load: str | None, neighbours: Mapping[str, Neighbour]) -> None:
-    """Raise an error unless the load of a control is a frame of another system.
+    """Raise an error if a load is given that is not a frame of another system.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The tool and the joints that a control law controls."""
+"""Selects the tool and the joints that a control law controls."""
 
 from __future__ import annotations
 

@@ -70,14 +70,14 @@ GeomagneticIndex = Annotated[float | list[float], BeforeValidator(_ap)]
 
 
 class Nrlmsise00Air(Part):
-    """NRLMSISE-00 with constant indices or with a table of indices; requires an epoch."""
+    """NRLMSISE-00 model with constant indices or with a table of indices; requires an epoch."""
 
     kind: Literal["nrlmsise00"] = "nrlmsise00"
     f107: Number | None = None
     f107a: Number | None = None
     ap: GeomagneticIndex | None = None
-    """Geomagnetic index: the daily value, or NRLMSISE-00's seven values: daily, then of the preceding
-    hours."""
+    """Geomagnetic index ap: the daily value, or the seven values of NRLMSISE-00, which are the daily value
+    and values of the preceding hours."""
     table: FilePath | None = None
     """CSV file with the indices, relative to the scenario."""
     three_hourly: bool = True

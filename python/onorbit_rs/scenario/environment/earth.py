@@ -29,7 +29,7 @@ Epoch = Annotated[str, BeforeValidator(_epoch)]
 
 
 class EarthPart(Part):
-    """Orientation of the Earth: IAU 2006 with measured UT1 and polar motion, or uniform rotation about z."""
+    """Orientation of the Earth: IAU 2006, with UT1 and polar motion if given, or uniform rotation about z."""
 
     rotation: Literal["iau2006", "about_z"] = "iau2006"
     ut1_minus_utc: Time | None = None

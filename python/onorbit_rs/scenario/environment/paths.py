@@ -6,7 +6,7 @@ from collections.abc import Collection
 
 
 def split_link(path: str, systems: Collection[str]) -> tuple[str, str]:
-    """Return system and link of a path.
+    """Return the system and the link of a path.
 
     The link is empty for a path ``SYSTEM`` without a link. If there is a single system, its name may be
     omitted. The system is empty for an invalid path.

@@ -54,7 +54,7 @@ class SurfaceEffect(Part):
         return [(("bodies", path), path) for path in self.bodies or {}]
 
     def of_system(self, name: str, systems: Collection[str]) -> Self | None:
-        """Return the effect on one system, with names of its links; None if it acts on other systems only."""
+        """Return the effect on the system ``name``, with the names of its links; None if there is none."""
         if self.bodies is None:
             return self
         own = {}

@@ -44,7 +44,7 @@ class CannonballSurface(Part):
 
 
 class Plate(Part):
-    """One-sided flat plate: its outward normal in link axes, its centroid from the origin of the link."""
+    """One-sided flat plate; its outward normal and its centroid are given in the frame of the link."""
 
     area: Annotated[Area, NotNegative]
     normal: Number3

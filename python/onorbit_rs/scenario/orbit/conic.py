@@ -33,7 +33,7 @@ class ConicOrbit(Part):
 
     Elements: a size (``semi_major_axis``, negative for a hyperbola, or ``semi_latus_rectum``, required for a
     parabola), ``eccentricity``, three angles, and one phase. State: ``position`` and ``velocity`` at the
-    start, inertial axes.
+    start, in inertial axes.
     """
 
     synonyms: ClassVar = {
@@ -101,7 +101,7 @@ class ConicOrbit(Part):
         return self
 
     def _set_defaults(self, *, has_phase: bool) -> None:
-        """Set the elements that were not given to those of an equatorial circle that starts at periapsis."""
+        """Set the eccentricity, the angles and, if no phase is given, the true anomaly to zero by default."""
         for name in ("eccentricity", "inclination", "raan", "argument_of_periapsis"):
             if getattr(self, name) is None:
                 setattr(self, name, 0.0)

@@ -10,5 +10,5 @@ GravityMode = Annotated[
     Literal["true", "carried"],
     BeforeValidator(lambda value: "true" if value is True else value),  # YAML reads true as a boolean
 ]
-"""``true``: the robot falls freely, so it drifts from a reference that does not; ``carried``: the robot moves
-with the reference."""
+"""Gravity mode. With ``true``, the robot falls freely and therefore drifts from a reference orbit that is not
+in free fall; with ``carried``, the robot moves with the reference orbit."""

@@ -50,7 +50,7 @@ class Sgp4Orbit(Part):
     gravity: Literal["wgs72", "wgs72old", "wgs84"] = "wgs72"
     check_checksum: bool = True
     propagator: Literal["native", "reference"] = "native"
-    """``reference`` reads and propagates the set with PyPI's ``sgp4``, to verify the native SGP4."""
+    """Implementation of SGP4. ``reference`` is the PyPI package ``sgp4``, which verifies the native one."""
     gravity_mode: GravityMode = "true"
 
     def build(self, folder: Path) -> _core.Sgp4:

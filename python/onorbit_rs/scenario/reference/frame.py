@@ -25,7 +25,7 @@ class TargetMotion(Pose):
 
     velocity: Speed3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
     spin: AngularRate3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
-    """Angular velocity, in W axes."""
+    """Angular velocity, in axes of W."""
     size: Length3 | None = None
     """Edge lengths of the box that the viewer draws at the target."""
 
@@ -64,7 +64,8 @@ Frame = Annotated[
     Discriminator(lambda value: "name" if isinstance(value, str) else "a target"),
     BeforeValidator(_frame),
 ]
-"""World W, the local orbital frame L, the base of the robot, a frame of another system, or a target."""
+"""Frame of a reference: the world W, the local orbital frame L, the base of the robot, a frame of another
+system, or a target."""
 
 
 def moving_frame(frame: Any) -> tuple[str, str] | None:

@@ -110,7 +110,7 @@ class TaskReference(Part, ABC):
 
 
 class LimitedReference(TaskReference):
-    """Reference of a tool whose duration is the shortest that its limits allow."""
+    """Reference of a tool with limits; without given times, its duration is the shortest that they allow."""
 
     speed: Annotated[Speed, Positive] | None = None
     """Largest speed of the tool."""

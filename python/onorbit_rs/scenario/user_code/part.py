@@ -13,7 +13,7 @@ from onorbit_rs.scenario.part import Part
 
 
 class UserClass(Part):
-    """User-defined class; its file or module is executed."""
+    """Part that names a user-defined class, whose file or module is executed."""
 
     role: ClassVar[str]
     """Word for an object of the class in messages: ``controller`` or ``effect``."""

@@ -87,7 +87,9 @@ def _equal_instants(time_a: Floats, time_b: Floats) -> tuple[NDArray[np.intp], N
 
 
 def _interpolated(rows: Rows, at: Floats) -> Rows:
-    """Return rows at times ``at``: quaternions by slerp, orbits by cubics, torques held, others linear.
+    """Return the rows at the times ``at``, interpolated linearly except quaternions, orbits and torques.
+
+    Quaternions are interpolated by slerp and orbits by cubics; torques are held.
 
     Cubics add the column ``hermite_error``, their error, m.
     """
@@ -118,7 +120,7 @@ def _interpolated(rows: Rows, at: Floats) -> Rows:
 def _hermite(
     first: Floats, second: Floats, rate_a: Floats, rate_b: Floats, s: Floats, step: Floats
 ) -> Floats:
-    """Return cubic Hermite interpolation at fractions ``s`` of the steps ``step``, s.
+    """Return the cubic Hermite interpolation at the fractions ``s`` of steps with the lengths ``step``.
 
     Linear interpolation would not suffice: on an orbit of radius `r` and speed `v`, its error over a step `h`
     is `v² h² / (8 r)`, 16 km for 120 s in a low orbit.

@@ -58,7 +58,7 @@ _ROUNDING = 64.0 * np.finfo(np.float64).eps
 def differences_in_quantities(
     a: Rows, b: Rows
 ) -> tuple[list[tuple[str, str, Floats, float, float]], list[str]]:
-    """Return name, unit, difference (T,), scale and error of each quantity, and notes on missing quantities.
+    """Return the name, unit, difference (T,), scale and error of each quantity, and notes on missing ones.
 
     The scale is the largest value, and 0 for attitudes, whose differences are angles; for inertial positions
     it is the robot's largest distance from its reference, because the much larger orbital radius would hide

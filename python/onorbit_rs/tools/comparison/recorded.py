@@ -35,7 +35,7 @@ Source = str | os.PathLike[str] | Mapping[str, Any] | Scenario | WorldScenario |
 
 @dataclass(frozen=True)
 class Recorded:
-    """Columns of one robot by their names in ``trace.npz``, its scenario and its robot."""
+    """Recorded columns of one robot, by their names in ``trace.npz``, and the scenario of the run."""
 
     name: str
     columns: dict[str, NDArray[np.float64]]

@@ -64,7 +64,7 @@ class Comparison(Verdict):
         return min((d.parts_at for d in self.differences if d.parts_at is not None), default=None)
 
     def __getitem__(self, name: str) -> Difference:
-        """Return the difference in a quantity such as ``base attitude``; raises CompareError without it."""
+        """Return the difference in a quantity; raise CompareError for one that was not compared."""
         return entry({one.name: one for one in self.differences}, name, "compared quantity")
 
     def __str__(self) -> str:

@@ -117,7 +117,7 @@ Named = tuple[str, "EventRecord"]
 
 
 def _first_touches(records: Sequence[EventRecord]) -> tuple[list[Named], bool]:
-    """Return the events with unique names, of each contact only those of its first touch.
+    """Return the events with unique names; of each contact, only the events of its first touch are kept.
 
     Small differences grow with every touch. The second value is True if events were left out.
     """
@@ -158,7 +158,7 @@ def _differences(name: str, pair: Pair, tolerance: float) -> Iterator[EventDiffe
 
 
 def _quantities(record: EventRecord) -> list[tuple[str, str, Any]]:
-    """Return name, unit and value of the compared quantities of an event; vectors are in axes of W."""
+    """Return the name, unit and value of each compared quantity of an event; vectors are in axes of W."""
     impulse = np.asarray(record.impulse)
     peak = [] if record.peak_force is None else [("peak force", "N", np.array([record.peak_force]))]
     return [

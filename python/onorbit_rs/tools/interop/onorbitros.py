@@ -33,7 +33,7 @@ class Conversion:
     """Plain data that :func:`onorbit_rs.scenario.load` accepts."""
     notes: list[Note]
     comments: dict[Location, str]
-    """Origin of each entry of the scenario."""
+    """Comment on the origin of each entry of the scenario, by the location of the entry."""
 
 
 def convert(
@@ -127,7 +127,7 @@ def _sources(files: Sequence[Path], keep_going: bool, notes: list[Note]) -> list
 
 
 def _unwrapped(source: Source) -> list[Source]:
-    """Return the mappings inside ROS namespaces; one with controllers or known keys is returned unchanged."""
+    """Return the mappings in ROS namespaces; a mapping with controllers or known keys is not unwrapped."""
     inner = source.data.values()
     is_namespace = all(isinstance(part, dict) for part in inner) and not _is_known(source.data)
     if not is_namespace or any(CONTROLLER_MARKS & set(part) or "type" in part for part in inner):

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from onorbit_rs.tools.interop.source import Source
 
 MISSPELT = {"semi_major_axix": "semi_major_axis", "rate_argument_Of_perigee": "rate_argument_of_perigee"}
-"""Correct names of misspelt keys in the files of OnOrbitROS, which its node does not read."""
+"""Correct names of the keys that files of OnOrbitROS misspell; its node does not read the misspelt keys."""
 
 DEFAULTS = {
     "semi_major_axis": 12000.0,
@@ -171,7 +171,8 @@ def _date(source: Source, name: str) -> datetime | None:
 def read_fixed_pose(source: Source) -> None:
     """Convert a pose to ``orbit: {kind: fixed_frame}``.
 
-    OnOrbitROS gives the position in km; the quaternion rotates the local frame to the inertial frame.
+    OnOrbitROS gives the position in km; the quaternion rotates the local frame to the inertial frame. If the
+    position is outside the Earth, the Earth's gravity is added, with ``gravity_mode: carried``.
     """
     position = [source.number(f"pos_{axis}", 0.0) * 1e3 for axis in "xyz"]
     names = [f"orientation_{axis}" for axis in "xyzw"]

@@ -1,4 +1,4 @@
-"""Placement of a target in front of the tool that is to capture it, and a gentle approach."""
+"""Places a target in front of the tool that will capture it, and determines the target's approach."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def pointing(model: Model, frame: str) -> Floats:
 
 
 def outwardness(model: Model, frame: str, q: Floats) -> Floats:
-    """Return a measure (batch,), m, of how far a tool is from the robot and points away from the robot.
+    """Return a measure (batch,), m, that is large if a tool is far from the robot and points away from it.
 
     The measure is the tool's distance from the centre of mass, times the cosine of the angle between the tool
     axis and the line from the centre of mass to the tool; 0 if negative. ``q`` has the shape (batch, nq).

@@ -49,7 +49,7 @@ class CapturePlan:
 
     @property
     def duration_s(self) -> float:
-        """Time for the approach, the joint motion and the retreat, s."""
+        """Duration of the run, s: the approach, the time until the release, and the retreat."""
         return float(f"{1.5 * GAP_M / self.speed + self.held_s + 4.0:.2g}")
 
 

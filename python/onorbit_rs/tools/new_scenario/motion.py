@@ -26,7 +26,7 @@ _BENT = 1.2
 _RANGE_FRACTION = 0.35
 """Largest deviation of a joint from the middle of its range, as a fraction of the range."""
 _GOOD_ENOUGH = 0.4
-"""Ratio of the neutral pose's manipulability to the best one above which the neutral pose is used."""
+"""Manipulability of the neutral pose, relative to the best one found, above which this pose is used."""
 _REACH_FRACTION = 0.15
 """Longest displacement of the tool, as a fraction of the arm's reach."""
 _SPEED = 0.1
@@ -77,7 +77,7 @@ def within(joint: Joint, value: float) -> float:
 
 
 def at_rest(joint: Joint) -> float:
-    """Return the position of a held joint, rad or m: zero, or else that nearest to it, see :func:`within`.
+    """Return the position of a held joint, rad or m: zero, or the nearest one that :func:`within` permits.
 
     For a prismatic joint that cannot be at zero, the middle of its range is returned.
     """

@@ -162,7 +162,7 @@ def _joint_law(plan: Plan) -> str:
 
 
 def _slowed(plan: Plan, key: str, value: str) -> str:
-    """Return the line with the duration of the motion; a comment states if joint limits determine it."""
+    """Return the line with the duration of the motion, with a comment if joint limits determine it."""
     entry = f"      {key}: {value}"
     return commented(entry, "long enough for the limits of the joints") if plan.is_slowed else f"{entry}\n"
 

@@ -35,9 +35,9 @@ SLOWEST_S = 300.0
 _ATTEMPTS = 4
 """Largest number of runs of one motion, each slower than the previous one."""
 _INERTIAL = 0.9
-"""Ratio of efforts after and before slowing a motion above which the efforts are not inertial."""
+"""Ratio of the efforts after a motion is slowed to those before; above it, they are not due to inertia."""
 FAST = 500.0
-"""Decay rate, 1/s, for which a fixed step of 1 ms is half a time constant."""
+"""Decay rate, 1/s, above which steps are adaptive: a fixed step of 1 ms exceeds half a time constant."""
 _FIRST_ESTIMATE_S, _OVERTIME = 2.0, 1.2
 """Wall-clock time, s, after which a run that would take ``_OVERTIME`` times the remaining time is stopped."""
 _FIXED, _ADAPTIVE = "rk4", "dormand_prince"
@@ -84,8 +84,9 @@ class Trials:
     def _slowed(self, plan: Plan, ends: float) -> tuple[float, Plan] | None:
         """Return the largest base rotation, rad, and the plan slowed down until joint limits are met.
 
-        Returns None if the run fails, or if rate limits require a motion longer than ``SLOWEST_S``. Joints
-        that exceed their effort limits at any speed, for example because of friction, are listed in the plan.
+        Returns None if no run passes with rates within their limits, in a motion of at most ``SLOWEST_S``.
+        Joints that exceed their effort limits at any speed, for example because of friction, are listed in
+        the plan.
         """
         done, before = None, math.inf
         for _ in range(_ATTEMPTS):

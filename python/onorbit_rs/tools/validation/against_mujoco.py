@@ -1,4 +1,4 @@
-"""Accelerations of free-floating robots against MuJoCo.
+"""Compares accelerations of free-floating robots with those of MuJoCo.
 
 MuJoCo shares no code with this package, and its conventions differ: quaternions are wxyz, and the base's
 linear velocity is in W axes, unlike the angular velocity, which is in body axes. Accelerations are compared
@@ -157,7 +157,7 @@ def trees() -> Any:
 
 
 def bundled(name: str) -> Any:
-    """Return the largest deviations of a bundled robot from MuJoCo, as :func:`compare`."""
+    """Return the largest deviations of a bundled robot from MuJoCo, as computed by :func:`compare`."""
     return compare(oo.robots.load(name), tree_of(oo.robots.path(name)), 1)
 
 

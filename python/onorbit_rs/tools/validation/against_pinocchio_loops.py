@@ -23,7 +23,7 @@ APART = 0.3
 def looped(seed: int) -> tuple[str, oo.Model, list[oo.Loop], Any]:
     """Return a random robot as URDF text and as a model, with loops that its random state closes.
 
-    The loops are a ball joint, a weld and a pin; every second robot has the ball joint twice.
+    The loops are a ball joint and, for even seeds, a weld, or, for odd seeds, a pin and the ball joint again.
     """
     rng = np.random.default_rng(4000 + seed)
     text = urdf(random_tree(40 + seed, links=LINKS, rotors=False))

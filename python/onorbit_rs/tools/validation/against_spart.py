@@ -76,7 +76,10 @@ def rates(model: oo.Model, q: Array, v: Array, a: Array) -> tuple[Array, Array]:
 
 
 def forces(model: oo.Model, q: Array, tau: Array) -> tuple[Array, Array]:
-    """Return SPART's ``(tau0, taum)``; ``tau0``: moment about the base's mass centre, base axes; force, W."""
+    """Return SPART's generalized forces ``(tau0, taum)``.
+
+    ``tau0`` contains the moment about the base's mass centre in base axes, N m, then the force in W, N.
+    """
     com = np.array(model.bodies[0].com)
     moment = tau[ANGULAR] - np.cross(com, tau[LINEAR])
     return np.concatenate([moment, matrix_from_quaternion(q[QUATERNION]) @ tau[LINEAR]]), tau[JOINTS_V]

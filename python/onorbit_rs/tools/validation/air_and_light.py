@@ -29,7 +29,7 @@ NYX_LOW = (293.379260, 90.482624, 252.626454)
 
 
 def circle_or_ellipse(name: str) -> oo.Kepler:
-    """Return the initial orbit of a case of radiation pressure by its name."""
+    """Return the initial orbit of the radiation-pressure case with this name."""
     a_km, e, i_deg = GMAT[name][0]
     return oo.Kepler(
         semi_major_axis=a_km * 1e3, eccentricity=e, inclination=np.radians(i_deg), mean_anomaly=0.0, mu=MU

@@ -1,4 +1,4 @@
-"""Brakes of joints: closed forms of a wheel, and Gauss's principle for random robots."""
+"""Tests brakes of joints against closed forms of a wheel and, for random robots, Gauss's principle."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SPIN = 2.0
 SLIP = 0.9
 """Slip torque of the brake, N m."""
 TORQUE = SLIP
-"""Slip torque of the closed form, N m."""
+"""Slip torque in the closed form, N m."""
 SEEDS = range(3200, 3212)
 
 
@@ -47,7 +47,7 @@ class _Torque:
 def wheel_system(
     spin: float, slip_torque: float = np.inf, torque: float | None = None
 ) -> tuple[oo.System, oo.System]:
-    """Return the craft with the brake of its wheel, engaged if the wheel is at rest, and a bystander."""
+    """Return the craft with the brake of its wheel, engaged if the wheel is at rest, and a distant body."""
     brake = oo.Brake("brake", "spin", slip_torque=slip_torque, engaged=spin == 0.0)
     q, v = np.zeros(8), np.zeros(7)
     q[6], v[6] = 1.0, spin
@@ -127,7 +127,7 @@ def capture_against_gauss(seed: int) -> tuple[float, float]:
 
 
 ENGAGE = {"velocity": 1e-12, "energy": 1e-12, "momentum": 1e-13, "impulse": 1e-12}
-"""Quantities of a rigid engagement and their largest errors."""
+"""Quantities of a rigid engagement, and the largest relative error allowed in each."""
 
 
 def engage_against_gauss(seed: int) -> tuple[float, ...]:

@@ -1,4 +1,4 @@
-"""Captures and releases of two spacecraft: closed forms, and Gauss's principle for random robots."""
+"""Tests captures and releases against closed forms and, for random robots, Gauss's principle."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def capture(first: Craft, second: Craft, **settings: Any) -> tuple[oo.EventRecor
 
 
 def momentum(craft: Craft, v: Array, point: Array) -> tuple[Array, Array]:
-    """Return the momentum (6,) of links about a point in W, N s and N m s, and its scales (2,).
+    """Return the momentum (6,) of a robot about a point in W, N s and N m s, and its scales (2,).
 
     The scales are the sums of the magnitudes of the linear and angular momenta of the links.
     """
@@ -173,7 +173,7 @@ def straight(count: int, *, tip: float = 2.0, rotor: float = 0.0, **joints: Any)
 
 
 def arm_and_target(model: oo.Model, joints: Any, rates: Any = 0.0) -> tuple[Craft, Craft]:
-    """Return an arm with slow joint motion, and a random robot at its tip, which the arm captures."""
+    """Return an arm with these joint positions and rates, and a random robot that the arm captures."""
     q, v = model.neutral(), np.zeros(model.nv)
     q[JOINTS_Q], v[:BASE_NV], v[JOINTS_V] = joints, [0.01, -0.02, 0.03, 0.05, -0.04, 0.02], rates
     return Craft(model, q, v, "tip"), random_craft(1001)
@@ -185,7 +185,7 @@ def singular() -> tuple[float, ...]:
 
 
 def massless() -> Any:
-    """Return the errors, relative to Gauss's principle, of captures by a massless gripper with a rotor."""
+    """Return the largest errors of captures by and of a massless gripper with a rotor (Gauss's principle)."""
     first, second = arm_and_target(straight(5, tip=0.0, rotor=0.2), 0.3, 0.1)
     return worst([against_gauss(first, second), against_gauss(second, first)])
 

@@ -38,7 +38,7 @@ class Gate:
 
 @dataclass(frozen=True)
 class Check:
-    """One error and its gate.
+    """Comparison of one error of a case with its gate.
 
     A skipped case has None for ``passed`` and ``error``. If the case raised an error, ``passed`` is False and
     ``error`` is None.
@@ -64,7 +64,7 @@ class Check:
 
 @dataclass(frozen=True)
 class Verdict:
-    """Result of a case: ``passed`` is None if it was skipped, and ``note`` gives the reason."""
+    """Result of a case; ``passed`` is None if it was skipped, and ``note`` explains a skip or an error."""
 
     family: str
     case: str

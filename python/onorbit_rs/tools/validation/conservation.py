@@ -1,4 +1,4 @@
-"""Conservation laws of free-floating robots: momentum, energy and Jacobi's integral."""
+"""Tests conservation laws of free-floating robots: momentum, energy and Jacobi's integral."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Impacts: restitution, Hertz's impact, spring and dashpot, and momentum of tumbling arms."""
+"""Tests impacts: restitution, Hertz's impact, spring and dashpot, and momentum of tumbling arms."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ NormalLaw = oo.HuntCrossley | oo.SpringDashpot
 
 
 class Impact(NamedTuple):
-    """Ratio of the speeds of separation and approach, and the rows of the contact."""
+    """Result of an impact: ratio of the speeds of separation and approach, and the rows of the contact."""
 
     restitution: float
     time: Array

@@ -1,4 +1,4 @@
-"""Bodies for the cases of contact: collision shapes, an immovable floor, and rotors that turn a load."""
+"""Bodies for the contact cases: collision shapes, an immovable floor, and rotors that turn a load."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def oscillating(system: str, force: float, axis: ArrayLike) -> list[oo.BodyWrenc
 
 
 def turning(name: str, model: oo.Model, place: ArrayLike, rate: float) -> oo.System:
-    """Return a system at rest whose rotors turn at ``rate``, rad/s; the sine of their load starts at zero."""
+    """Return a system at rest whose rotors turn at ``rate``, rad/s; :func:`oscillating` loads start at 0."""
     quarter = 0.5 * np.pi
     q = [*np.asarray(place, dtype=float), 0, 0, 0, 1, -quarter, quarter]
     return oo.System(name, model, q, [0, 0, 0, 0, 0, 0, rate, -rate])

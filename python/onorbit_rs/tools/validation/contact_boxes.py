@@ -1,4 +1,4 @@
-"""Boxes that tumble and collide with friction: momentum, energy, and the moments of the recorded forces."""
+"""Tests momentum, energy and recorded forces of two boxes that tumble and collide with friction."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ STARTS = {
 
 
 def box(name: str) -> oo.Model:
-    """Return a uniform box with the size and mass of a name."""
+    """Return the uniform box with this name; :data:`SIZES` and :data:`MASSES` define its size and mass."""
     x, y, z = SIZES[name]
     moments = MASSES[name] / 12.0 * np.array([y * y + z * z, x * x + z * z, x * x + y * y])
     return body(f'<box size="{x} {y} {z}"/>', MASSES[name], moments)

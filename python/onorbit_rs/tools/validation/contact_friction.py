@@ -1,4 +1,4 @@
-"""Friction of contacts: sliding to rolling, oblique impacts, torsion, break-away, return after a pulse."""
+"""Tests friction: sliding to rolling, oblique impacts, torsion, break-away, and the return after a pulse."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def _between(time: Array, values: Array, start: float, end: float) -> tuple[Arra
 
 
 def oblique(across: float) -> tuple[float, float]:
-    """Return speed along the floor and circumferential speed after an impact, relative to the normal speed.
+    """Return the speeds along the floor and of the surface after an impact, relative to the normal speed.
 
     ``across`` is the ratio of tangential and normal speed before the impact.
 
@@ -118,7 +118,7 @@ def sticking() -> tuple[float, float]:
 
 
 def spinning() -> tuple[float, float]:
-    """Return the error of a spin about the normal after 0.2 s, and the spin after it has stopped."""
+    """Return the error, rad/s, of a spin about the normal after 0.2 s, and the rate, rad/s, at the end."""
     friction = oo.Friction(MU, torsional=TORSIONAL, stiffness=1e6)
     trace = pressed(resting(solid_sphere(), (0, 0, 0, 0, 0, 2.0)), friction, weight(), lasts=3.0)
     time, rate = trace["sphere"].time, trace["sphere"].v[:, 5]
@@ -128,7 +128,7 @@ def spinning() -> tuple[float, float]:
 
 
 def stopping() -> tuple[float, float]:
-    """Return the errors of path and dissipated energy of a body that slides to rest from 1 m/s."""
+    """Return the relative errors of path and dissipated energy of a body that slides to rest from 1 m/s."""
     trace = pressed(resting(block(), (1.0, 0, 0, 0, 0, 0)), FRICTION, weight(), lasts=0.5)
     path, (start, *_, end) = trace["sphere"].q[-1, 0], trace.contacts["touch"].dissipated
     return abs(path * 2.0 * 0.3 * G - 1.0), abs((end - start) / 0.5 - 1.0)

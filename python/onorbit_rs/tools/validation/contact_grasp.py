@@ -1,4 +1,4 @@
-"""A capsule held between two pads by friction does not creep, neither at rest nor under oscillating loads."""
+"""Tests that a capsule held between two pads by friction creeps under neither constant nor varying loads."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rigid impacts and lasting contacts: closed forms, energy, and Painlevé's case."""
+"""Tests rigid impacts and lasting contacts: closed forms, energy, and Painlevé's case."""
 
 from __future__ import annotations
 
@@ -118,7 +118,7 @@ def falls() -> list[float]:
     """Return the largest errors of boxes that fall on a plate, corner by corner, with friction.
 
     They are the energy created by an impact and the error of the energy balance, both relative to the energy
-    at the start, and the changes of linear and angular momentum, both divided by the impulse (1 and m).
+    at the start, and the changes of linear and angular momentum, both divided by the impulse (in 1 and m).
     """
     rng = np.random.default_rng(3)
     errors = []
@@ -140,7 +140,7 @@ def falls() -> list[float]:
 
 
 def _rod(normal: oo.ImpactLaw | oo.HuntCrossley, friction: oo.Friction | None = None) -> oo.WorldTrace:
-    """Simulate a uniform rod at an angle with tan = 2 whose tip slides on the floor under 1 N."""
+    """Simulate a uniform rod, inclined at an angle of tangent 2, whose tip slides on the floor under 1 N."""
     cosine, half = 1.0 / np.sqrt(5.0), 0.5 * LENGTH
     sine, moment = TANGENT * cosine, half**2 / 3.0
     model = oo.Model.from_urdf_string(

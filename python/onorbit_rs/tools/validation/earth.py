@@ -1,4 +1,4 @@
-"""Orientation of the Earth: celestial to terrestrial axes."""
+"""Compares the rotation from celestial to terrestrial axes with IAU SOFA."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Velocities after a capture by Gauss's principle, solved densely from the mass matrices of single robots.
+"""Computes velocities after captures by Gauss's principle, densely, from the mass matrices of single robots.
 
 The module does not combine robots into one tree: the six components of the relative twist at a common point
 are constraints on the velocities of the separate trees.
@@ -94,7 +94,7 @@ def project(
 
 
 def impact(first: Craft, second: Craft, *, gap: Array | float = 0.0, joints: bool = True) -> Impact:
-    """Return the closest velocities without relative twist, in the metric of the kinetic energy.
+    """Return the impact of a capture: the closest velocities without relative twist, by kinetic energy.
 
     With the mass matrix `M` of both robots, the Jacobian `J` of the relative twist and the velocities `v⁻`
     before the capture: `v⁺ = v⁻ − M⁻¹ Jᵀ Λ J v⁻`, `Λ = (J M⁻¹ Jᵀ)⁻¹`, energy lost `½ (J v⁻)ᵀ Λ (J v⁻)`,

@@ -1,4 +1,4 @@
-"""Grasps by contact forces: closing rate, force, slip, creep, and the balance through a whole capture."""
+"""Tests grasps by contact forces: closing rate, force, slip, creep, and balances of a whole capture."""
 
 from __future__ import annotations
 
@@ -44,10 +44,10 @@ def steady() -> list[float]:
 
 
 def pulled(fraction: float) -> tuple[float, float]:
-    """Return speed, m/s, and acceleration, m/s², of the bar in the hand at the end of a pull along the bar.
+    """Return the speed, m/s, and the acceleration, m/s², of the bar in the hand at the end of a pull.
 
     The arm has no motor, so that the hand, of mass `m`, follows the bar, of mass `M`. The friction that holds
-    both together is `P m/(M + m)` for the pull `P`; ``fraction`` is its ratio to that of both pads.
+    both together is `P m/(M + m)` for the pull `P`; ``fraction`` is its ratio to the largest one of the pads.
     """
     friction = 2.0 * grasp_worlds.MU * FORCE
     pull = fraction * friction * (BAR_MASS + SLIDER) / SLIDER
@@ -63,8 +63,8 @@ def pulled(fraction: float) -> tuple[float, float]:
 def slip() -> list[float]:
     """Return the speed, m/s, under a pull that the pads hold, and an error of the slip under a stronger pull.
 
-    It is the relative error of the acceleration of the bar in the hand, `(c − 1) f (1/M + 1/m)` with the
-    friction `f` of the pads and the load `c` of the contact as a fraction of it.
+    The error is that of the acceleration of the bar in the hand, relative to `(c − 1) f (1/M + 1/m)`, where
+    `f` is the largest friction of the pads and `c f` the load of the contact.
     """
     acceleration = (SLIPS - 1.0) * 2.0 * grasp_worlds.MU * FORCE * (1.0 / BAR_MASS + 1.0 / SLIDER)
     return [abs(pulled(HOLDS)[0]), abs(pulled(SLIPS)[1] / acceleration - 1.0)]

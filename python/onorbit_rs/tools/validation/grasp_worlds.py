@@ -1,4 +1,4 @@
-"""A hand with two jaws on an arm with one joint, and a bar that it grasps, for the cases of grasps.
+"""A hand with two jaws on an arm with one joint, and a bar that it grasps, for the grasp cases.
 
 The bus has a large moment of inertia, so that the closed forms need not include its rotation.
 """
@@ -22,7 +22,7 @@ DAMPING, CLOSING = 40.0, -0.02
 RADIUS, BAR_MASS = 0.02, 20.0
 """Radius of the bar, m, and its mass, kg."""
 FINGERS = ("first", "second", "third")
-"""Fingers of the hand with three fingers."""
+"""Names of the fingers of the hand with three fingers."""
 MU = 0.6
 STIFFNESS = 2e4
 """Stiffness of a pad, N/m."""

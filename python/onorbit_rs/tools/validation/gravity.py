@@ -35,14 +35,14 @@ def after_a_day(field: oo.GravityField, earth: oo.Earth, mu: float = MU) -> Any:
 
 
 def gmat_jgm3(degree: int, order: int, expected: Any) -> tuple[float]:
-    """Return the distance from GMAT's position, m, which is caused by GMAT's nutation model of 1980."""
+    """Return the distance from GMAT's position, m; its cause is GMAT's nutation model of 1980."""
     return (float(np.linalg.norm(after_a_day(field("jgm3", degree, order), earth_2000()) - expected)),)
 
 
 def monte_j2() -> tuple[float]:
     """Return the distance from MONTE's position, m, with the pole of J2000.
 
-    The radius of the Earth is assumed.
+    The source does not state the radius of the Earth; :data:`RADIUS` is used.
     """
     zonal = oo.GravityField.zonal(j=[-MONTE_C20 * np.sqrt(5.0)], mu=MONTE_MU, radius=RADIUS)
     reached = after_a_day(zonal, oo.Earth(rotation="about_z"), MONTE_MU)

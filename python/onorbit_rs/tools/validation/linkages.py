@@ -38,7 +38,7 @@ ALONG_X = ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
 
 
 def base(name: str) -> oo.ModelBuilder:
-    """Return a builder with the base."""
+    """Return a builder of a robot that has only the base so far."""
     return oo.ModelBuilder(name, base="base", mass=BASE_MASS, inertia=np.diag(BASE_INERTIA))
 
 
@@ -53,7 +53,7 @@ def add_rod(builder: oo.ModelBuilder, name: str, parent: str, x: complex, mass: 
 
 @dataclass(frozen=True)
 class Linkage:
-    """A looped robot, and its motion as functions of the angle ``θ`` of its first joint.
+    """A robot with a closed loop, and its motion as functions of the angle ``θ`` of its first joint.
 
     ``joints(θ)`` returns (3, n): the positions of all joints, and their first and second derivatives with
     respect to ``θ``. ``bodies(θ)`` returns the bodies in the plane, the base first.

@@ -1,4 +1,4 @@
-"""Closed loops and mimic joints against closed forms of planar linkages."""
+"""Tests closed loops and mimic joints against closed forms of planar linkages."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ from onorbit_rs.tools.validation.trees import Array
 CRANK, RATE = 1.0, 2.0
 """Initial angle of the crank, rad, and its rate, rad/s."""
 TORQUE = 0.3
-"""Torque on the crank, N m, for the accelerations."""
+"""Torque on the crank, N m, with which accelerations are compared."""
 STATES = ((1.0, 2.0), (2.5, -1.0), (4.0, 3.0), (5.5, 0.0))
-"""Angles of the crank, rad, and its rates, rad/s, for the accelerations."""
+"""Angles of the crank, rad, and its rates, rad/s, at which accelerations are compared."""
 
 
 def simulate(model: oo.Model, q: Array, v: Array, duration: float, step: float = 1e-3) -> oo.Trace:
@@ -69,7 +69,7 @@ def along_the_run(linkage: Linkage, duration: float = 5.0) -> tuple[float, float
 
 
 def accelerations(linkage: Linkage) -> float:
-    """Return the largest error of the joint accelerations by Eksergian's equation, as a fraction."""
+    """Return the largest error of the joint accelerations, relative to those by Eksergian's equation."""
     errors = []
     for crank, rate in STATES:
         (q, v), tau = linkage.state(crank, rate), np.zeros(linkage.model.nv)
@@ -87,7 +87,7 @@ def linkages(*makers: Callable[[], Linkage]) -> tuple[float, ...]:
 
 
 SPIN, MASS, RADIUS = 1.5, 2.0, 0.6
-"""Rate of a craft, rad/s, and mass and distance from the axis of one of two sliders on it, kg and m."""
+"""Rate of a craft, rad/s, and the mass, kg, and distance from the axis, m, of one of two sliders on it."""
 
 
 def spinning_sliders() -> tuple[float, float, float]:
@@ -145,7 +145,7 @@ RATIO, WHEELS = -2.5, (0.2, 0.05)
 
 
 def geared() -> tuple[float, float, float]:
-    """Return the errors of the angles of a driven wheel and of the wheel that mimics it, and of momentum.
+    """Return the errors of the angles, rad, of a driven and a mimicking wheel, and of the momentum.
 
     `J = I1 + n² I2 - (I1 + n I2)²/(I + I1 + I2)` is the reduced inertia about the axis, with the inertias
     `I1` and `I2` of the wheels, their ratio `n`, and the inertia `I` of the base and the wheels' masses.

@@ -1,4 +1,4 @@
-"""Drift, momentum and energy of closed loops over long runs, and the order of convergence."""
+"""Tests drift, momentum and energy of closed loops over long runs, and the order of convergence."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def shifted(y: float) -> Array:
 
 
 def drift() -> tuple[float, float, float, float, float]:
-    """Return opening, m and rad, and the drifts of linear and angular momentum and of energy.
+    """Return the opening of the loop, m and rad, and the drifts of both momenta and of the energy.
 
     The opening is that of frames placed by forward kinematics. Drifts are relative to the largest magnitude.
     """
@@ -108,7 +108,7 @@ def state_after(linkage: Linkage, step: float) -> tuple[Any, float]:
 
 
 def orders() -> tuple[float, float]:
-    """Return by how much the order of convergence of configuration and energy is below four."""
+    """Return the shortfalls from four of the orders of convergence of the configuration and the energy."""
     linkage = four_bar_linkage()
     exact, _ = state_after(linkage, 1e-3)
     ends = [state_after(linkage, step) for step in STEPS]

@@ -1,4 +1,4 @@
-"""Closed loops against Gauss's principle, solved densely with rows from the Jacobians of frames."""
+"""Tests closed loops against Gauss's principle, solved densely with rows from the Jacobians of frames."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def gripper(seed: int, redundant: bool = True) -> Craft:
 
 
 def expected_capture(first: Craft, second: Craft) -> Array:
-    """Return the joined velocities of both robots after a capture: the nearest that all loops permit."""
+    """Return the velocities (Σnv,) after a capture: those nearest to the earlier ones that loops permit."""
     crafts = (first, second)
     own = np.zeros((len(rows(first.model, first.q)), first.model.nv + second.model.nv))
     own[:, : first.model.nv] = rows(first.model, first.q)
@@ -192,8 +192,8 @@ OPENED = (0.02, 0.01)
 def closed_from_open(seed: int) -> tuple[float, float, float]:
     """Return the errors when the loops of a gripper, opened by small changes of all joints, are closed.
 
-    These are the error of the velocity, the change of momentum, both relative, and by how much the order of
-    the shift of the mass centre in the opening is below two.
+    These are the relative error of the velocity, the relative change of momentum, and the shortfall from two
+    of the order with which the shift of the mass centre decreases with the opening.
     """
     craft = gripper(seed, redundant=False)
     model, rng = craft.model, np.random.default_rng(seed)

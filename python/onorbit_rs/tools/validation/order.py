@@ -1,4 +1,4 @@
-"""Order of convergence of the integrators and of interpolated paths."""
+"""Measures the order of convergence of the integrators and of interpolated paths."""
 
 from __future__ import annotations
 

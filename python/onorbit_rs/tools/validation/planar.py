@@ -97,7 +97,7 @@ class Reduced:
     """A linkage on a free base without momentum, which has the kinetic energy `½ J(θ) θ̇²`.
 
     ``inertia`` is `J`, kg m², and ``slope`` its derivative. The base turns with the rate ``spin`` times `θ̇`
-    while its origin, in its own axes, has the velocity ``velocity`` times `θ̇`, m.
+    while its origin has ``velocity`` (m, in axes of the base) times `θ̇` as its velocity.
     """
 
     inertia: float

@@ -1,4 +1,4 @@
-"""Relative motion in orbit: Hill's equations."""
+"""Compares relative motion in orbit with Hill's equations."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ INTERCEPT = [0.274190838333, 0.013466718841345, 0.035907981315]
 
 
 def mean_motion() -> float:
-    """Return the mean motion, rad/s."""
+    """Return the mean motion of the target's orbit, rad/s."""
     return float(np.sqrt(MU / RADIUS**3))
 
 
@@ -41,7 +41,7 @@ ALTITUDE_RADIUS = 6_778_137.0
 
 
 def ellipse() -> tuple[float, float]:
-    """Simulate a point 100 m above its target and 0.2 m/s slower for two revolutions.
+    """Simulate a point 100 m above and 50 m beside its target, and 0.23 m/s slower, for two revolutions.
 
     Returns the distance from Hill's closed form, m, which is of second order in the separation, and the
     relative deviation of the ratio of the ellipse's axes from 2.

@@ -1,4 +1,4 @@
-"""Complete runs: the paper's experiment against another engine, and certificates of bundled scenarios."""
+"""Tests complete runs: the paper's experiment, and the certificates of the bundled scenarios."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rotation of one body: NASA's brick, a torque-free symmetric top, librations in orbit."""
+"""Tests the rotation of one body: NASA's brick, a torque-free symmetric top, and librations in orbit."""
 
 from __future__ import annotations
 

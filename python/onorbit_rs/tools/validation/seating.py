@@ -1,4 +1,4 @@
-"""Seating, the motion to a nominal pose after a capture: closed forms of two bodies at rest."""
+"""Tests seating, the motion to a nominal pose after a capture, against closed forms of two bodies."""
 
 from __future__ import annotations
 
@@ -47,10 +47,11 @@ def pulled() -> tuple[float, float, float, float]:
 
 
 def turned() -> tuple[float, float]:
-    """Return the errors of the final attitude of the first body and of the relative attitude.
+    """Return the errors of the first body's final attitude, rad, and of the relative rotation matrix.
 
     The bodies share a rotation `θ` about the common axis according to their moments of inertia `I1` and `I2`
-    about it: the first turns by `θ1 = −θ I2/(I1 + I2)`.
+    about it: the first turns by `θ1 = −θ I2/(I1 + I2)`. The first value is the larger one of its error and of
+    the largest displacement of a body, m, which should be zero.
     """
     first, second = INERTIAS
     systems = [rigid("a", 50.0, [4, 4, first], [0, 0, 0], np.zeros(6)),

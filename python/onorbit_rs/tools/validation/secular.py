@@ -1,4 +1,4 @@
-"""Secular effects of zonal harmonics on orbital elements: Curtis, and Qi and others."""
+"""Compares effects of zonal harmonics on orbital elements with results of Curtis and of Qi and others."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ QI = {
 
 
 def elements(r: Any, v: Any, mu: float) -> Any:
-    """Return eccentricity, inclination, node and argument of periapsis (T, 4), rad, of states (T, 3)."""
+    """Return the eccentricity, inclination, node and argument of periapsis, (T, 4), rad, of states (T, 3)."""
     h = np.cross(r, v)
     size = np.linalg.norm(h, axis=-1)
     e = np.cross(v, h) / mu - r / np.linalg.norm(r, axis=-1)[:, None]
@@ -71,7 +71,7 @@ def j3(inclination: float) -> tuple[float, float]:
 
 
 def j3_gates(inclination: float) -> tuple[Gate, ...]:
-    """Return gates of 10 % of the published changes, as in poliastro's tests, plus the last printed digit."""
+    """Return the gates: 10 % of the published changes, as in poliastro's tests, plus 1e-7 for rounding."""
     i, e = QI[inclination]
     return (Gate("eccentricity", 0.1 * e + 1e-7), Gate("inclination", 0.1 * i + 1e-7, "rad"))
 

@@ -1,4 +1,4 @@
-"""SGP4 on the element sets of its verification report, in km, km/s and minutes as published."""
+"""Tests SGP4 on the element sets of its verification report, in km, km/s and minutes as published."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class ElementSet(NamedTuple):
     rows: list[list[float]]
 
     def orbit(self) -> oo.Sgp4:
-        """Return the orbit; checksums are ignored, since sets that provoke errors have wrong checksums."""
+        """Return the orbit; the checksums of sets that SGP4 refuses are wrong, and therefore ignored."""
         is_sound = self.regime != "refused"
         return oo.Sgp4(self.line1, self.line2, gravity=GRAVITY, check_checksum=is_sound)
 

@@ -1,4 +1,4 @@
-"""Springs at joints of a free base: closed forms of oscillations, also cubic, damped and with friction."""
+"""Tests springs at joints on a free base against closed forms: linear, cubic, damped, and with friction."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ STIFFNESS = 30.0
 DAMPING = 0.4
 """Damping of the wheel in the damped oscillation, N m s/rad."""
 HARDENING, SOFTENING = 80.0, -4.0
-"""Cubic stiffnesses, N m/rad³."""
+"""Cubic stiffnesses of a hardening and of a softening spring, N m/rad³."""
 AMPLITUDE = 1.2
 """Initial deflection, rad."""
 REST = 0.4
@@ -170,7 +170,7 @@ def rubbing_end() -> tuple[float, float]:
 
 
 def rubbing() -> tuple[float, float, float]:
-    """Return the errors of the deflection, rad, and the time, s, at which the wheel sticks, and its creep."""
+    """Return the errors of deflection, rad, and time, s, at which the wheel sticks, and its creep, rad."""
     trace = released(wheel(friction=FRICTION, rest_position=REST), AMPLITUDE, 4.5, 1e-3)
     deflection, time = np.asarray(trace.q)[:, 7] - REST, np.asarray(trace.time)
     end, stop = rubbing_end()

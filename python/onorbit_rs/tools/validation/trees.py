@@ -131,7 +131,7 @@ def build(tree: Tree) -> oo.Model:
 
 
 def urdf(tree: Tree) -> str:
-    """Return the robot as URDF text, without rotors. The tool is a link without inertia."""
+    """Return the robot as URDF text, without rotors; the tool is a link without inertia."""
     robot = ElementTree.Element("robot", name="random")
     for part in tree.parts:
         link = ElementTree.SubElement(robot, "link", name=part.name)

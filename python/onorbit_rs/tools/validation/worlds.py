@@ -1,4 +1,4 @@
-"""Worlds of several spacecraft: groups, latches, chains of captures, and motion between events."""
+"""Tests worlds of several spacecraft: groups, latches, chains of captures, and motion between events."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ CHAIN = (("b", "c"), ("d", "a"), ("c", "d"))  # the first captures the second
 
 
 def chain() -> tuple[float, float, float]:
-    """Return the errors of velocity, energy and momentum of three captures that connect four robots.
+    """Return the relative errors of velocity, energy and momentum of three captures of four robots.
 
     Earlier connections persist, so each capture is a projection with the constraints of all captures so far.
     """
@@ -133,8 +133,8 @@ def latch() -> tuple[float, float]:
 
     The time is `(d − r)/v + t_held`.
 
-    `d` is the initial distance, `v` the closing speed, `r` the latch's reach, `t_held` the time that it
-    waits.
+    `d` is the initial distance, `v` the closing speed, `r` the latch's reach, `t_held` the time for which its
+    conditions must hold.
     """
     systems = [
         rigid("a", 40.0, [3, 4, 5], [0, 0, 0], np.zeros(6)),
@@ -167,7 +167,7 @@ RADIUS = 6_778e3  # m
 
 
 def on_orbit() -> tuple[float, float, float]:
-    """Return errors of a capture on a circular orbit: centre of mass, momentum at the event and afterwards.
+    """Return the errors of the common centre of mass, m, and of momentum at and after a capture in orbit.
 
     The common centre of mass obeys the Clohessy-Wiltshire equations before and after the capture.
     """

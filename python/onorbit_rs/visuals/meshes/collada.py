@@ -142,7 +142,10 @@ def _material(material: Any, companions: Companions | None) -> tuple[Any, Any]:
 
 
 def _opacity(effect: Any) -> float:
-    """Return the opacity in either of Collada's modes; 1 for an invisible material, an export error."""
+    """Return the opacity in either of Collada's modes, 0 to 1; an invisible material is taken as opaque.
+
+    Materials are invisible only because of errors of exporters.
+    """
     import collada
 
     transparent, factor = effect.transparent, effect.transparency

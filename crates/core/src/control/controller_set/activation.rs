@@ -1,4 +1,4 @@
-//! Starts and stops controls.
+//! Start and stop of controls during a run, at given times and events and after decided goals.
 
 use super::ControllerSet;
 use crate::control::check::check_disjoint;
@@ -9,8 +9,8 @@ use crate::model::{BASE_NQ, Model};
 use crate::spatial::Scalar;
 
 impl<S: Scalar> ControllerSet<'_, S> {
-    /// Evaluates the goals at `t`, s, stops the controls that end there and starts those that are due.
-    /// Returns true if the set of active controls changed or a control missed its goal.
+    /// Evaluates the goals at `t`, s, stops the controls whose end time is reached and starts those that are
+    /// due. Returns true if the set of active controls changed or a control missed its goal.
     pub(super) fn activate(&mut self, t: f64, model: &Model) -> Result<bool, ControlError> {
         let mut has_changed = self.stop_due(t);
         for i in 0..self.controls.len() {
@@ -25,8 +25,9 @@ impl<S: Scalar> ControllerSet<'_, S> {
         Ok(has_changed)
     }
 
-    /// Evaluates the goals at `t`, s, and stops the controls that end there. Controls that miss their goal
-    /// hold their present pose or joint positions. Returns true if a control ended or missed its goal.
+    /// Evaluates the goals at `t`, s, and stops the controls whose end time is reached. Controls that miss
+    /// their goal hold their present pose or joint positions. Returns true if a control ended or missed its
+    /// goal.
     fn stop_due(&mut self, t: f64) -> bool {
         let Self { controls, states, same_instant, .. } = self;
         let now = t + *same_instant;
@@ -68,7 +69,8 @@ impl<S: Scalar> ControllerSet<'_, S> {
         match controls[i].begin {
             Begin::At(_) => {}
             Begin::After(before) => states[before].memory.phase = Phase::Over,
-            // because the time of an event is not known in advance, the control replaces those that drive its joints
+            // because the time of an event is not known in advance, the control replaces those that drive
+            // its joints
             Begin::AfterEvent(_) => {
                 let drives = |other: &Control| other.joints.iter().any(|j| controls[i].joints.contains(j));
                 let replaced = states.iter_mut().zip(controls.iter()).filter(|(_, other)| drives(other));

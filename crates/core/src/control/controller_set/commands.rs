@@ -61,7 +61,7 @@ impl<S: Scalar> ControllerSet<'_, S> {
 
     /// Sets whether the next update repeats the previous one at the same time and state. Laws that command
     /// efforts, except those that follow external commands, are then not evaluated again and keep their
-    /// torques, because a second evaluation would change the state of laws that have one.
+    /// torques, because a second evaluation would update the state of a law, such as an integral, twice.
     pub fn set_repeated(&mut self, is_repeated: bool) {
         self.is_repeated = is_repeated;
     }

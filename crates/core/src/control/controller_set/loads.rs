@@ -30,8 +30,8 @@ impl<S: Scalar> ControllerSet<'_, S> {
         }
     }
 
-    /// Checks the internal forces that the controls command. `captures` are the names of the captures that may close
-    /// a loop.
+    /// Checks the internal forces that the controls command. `captures` are the names of the captures that
+    /// may close a loop.
     ///
     /// # Errors
     /// [`ControlError`] for a loop that does not exist, a component along which the loop transmits no force

@@ -75,9 +75,9 @@ pub struct ControllerSet<'a, S> {
 }
 
 impl<'a, S: Scalar> ControllerSet<'a, S> {
-    /// Checks the controls, resets user-defined controllers, and allocates the workspaces. Times that differ
-    /// by at most `same_instant`, s, are treated as equal. `knows_others` must be true if
-    /// [`ControllerSet::know`] will be called.
+    /// Checks the controls, resets their laws, and allocates the workspaces. Times that differ by at most
+    /// `same_instant`, s, are treated as equal. `knows_others` must be true if [`ControllerSet::know`] will
+    /// be called.
     ///
     /// # Errors
     /// The errors of [`check_controls`] and of user-defined controllers.

@@ -99,7 +99,7 @@ impl<S: Scalar> ControllerSet<'_, S> {
             let forces =
                 running(self.controls, &self.states).flat_map(|(control, _)| &control.internal_forces);
             forces.for_each(|force| looped.add_force(force));
-            dynamics.load.fill(0.0); // these are in addition to those of the model
+            dynamics.load.fill(0.0); // `eliminate` adds the loads of the model
         } else {
             for (to, from) in dynamics.inertia.iter_mut().zip(&reduced.inertia) {
                 *to = from.value();
@@ -246,9 +246,9 @@ fn reduce_to_frame<S: Scalar>(
     }
 }
 
-/// Computes the Jacobian, row major `(6, k)`, of the frame of the last [`reduce_to_frame`] with respect to the
-/// `k` joints in `joints`, and writes it to `out`. `all` is the Jacobian, `(6, n)`, with respect to all joints
-/// of the robot. If the robot has closed loops, the motion of the joints without a motor is included.
+/// Computes the Jacobian, row major `(6, k)`, of the frame of the last [`reduce_to_frame`] with respect to
+/// the `k` joints in `joints`, and writes it to `out`. `all` is the Jacobian, `(6, n)`, with respect to all
+/// joints of the robot. If the robot has closed loops, the motion of the joints without a motor is included.
 fn driven_jacobian<S: Scalar>(
     (known, looped): (&mut Option<Box<KnownTree>>, &mut Option<Box<Looped<S>>>),
     is_relative: bool,

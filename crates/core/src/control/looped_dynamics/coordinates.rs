@@ -34,9 +34,10 @@ impl LoopedDynamics {
         self.orthonormalize();
     }
 
-    /// Makes the columns of `G` that belong to tasks orthonormal in the rows of the joints that tasks drive, by the
-    /// modified Gram-Schmidt process, and removes their part of `g` in these rows. The joint accelerations of
-    /// least norm then do not depend on the choice of independent joints, which may change during a run.
+    /// Makes the columns of `G` that belong to tasks orthonormal in the rows of the joints that tasks drive,
+    /// by the modified Gram-Schmidt process, and removes their part of `g` in these rows. The joint
+    /// accelerations of least norm then do not depend on the choice of independent joints, which may change
+    /// during a run.
     fn orthonormalize(&mut self) {
         let Self { n, joints, commands, work, .. } = self;
         let (n, f) = (*n, joints.count());

@@ -55,15 +55,16 @@ impl<S: Scalar> Looped<S> {
 /// with the accelerations `z` of independent coordinates ([`IndependentJoints`]). The independent joints are
 /// chosen among the driven joints as far as possible. With `M* q̈ + l = τ + Kᵀ λ` and `K G = 0`, the reduced
 /// equations are `Gᵀ M* G z + Gᵀ (l + M* g) = Gᵀ τ`, to which [`HybridDynamics`] applies. In the rows of the
-/// joints that tasks drive, the columns of `G` of these joints are orthonormal, and `g` is orthogonal to them, so
-/// that the accelerations of least norm do not depend on the choice of independent joints.
+/// joints that tasks drive, the columns of `G` of these joints are orthonormal, and `g` is orthogonal to
+/// them, so that the accelerations of least norm do not depend on the choice of independent joints.
 ///
 /// Several driven joints may share one coordinate. The torques of the driven joints `A` are those of least
 /// norm with the required efforts `u = G_Aᵀ τ_A` of the coordinates: `τ_A = G_A (G_Aᵀ G_A)⁻¹ u`. Joints
 /// without a motor have no torque. Torques with `G_Aᵀ t = 0` change only the constraint forces `λ`, and no
 /// motion. If internal forces are commanded, the smallest such `t` that produces them is added.
 ///
-/// Source: Featherstone, Rigid Body Dynamics Algorithms, 2008, section 8.12 (inverse dynamics with closed loops).
+/// Source: Featherstone, Rigid Body Dynamics Algorithms, 2008, section 8.12 (inverse dynamics with closed
+/// loops).
 #[derive(Debug)]
 pub(super) struct LoopedDynamics {
     /// Number of joints of the tree.
@@ -78,14 +79,15 @@ pub(super) struct LoopedDynamics {
     /// Preference of each joint of the tree as an independent joint, `(n,)`: 0 for mimic joints, 1 for all
     /// others.
     leader: Vec<u8>,
-    /// For each row and for each joint, true if its unit is m.
+    /// For each constraint row, true if its error is a length, m; and for each joint, true if its position is
+    /// a length, m.
     is_length: [Vec<bool>; 2],
     /// `M*` of the tree, row major `(n, n)`.
     inertia: Vec<f64>,
     /// `c* − Q*` of the tree, `(n,)`, N m (N).
     model_load: Vec<f64>,
-    /// `K`, with `n` columns; the first `m` rows are those of the loops, the other rows those of joints held by
-    /// friction.
+    /// `K`, with `n` columns; the first `m` rows are those of the loops, the other rows those of joints held
+    /// by friction.
     jacobian: Vec<f64>,
     /// `k`, with one entry per row of `K`.
     right: Vec<f64>,

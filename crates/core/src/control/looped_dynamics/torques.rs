@@ -64,8 +64,8 @@ impl LoopedDynamics {
         }
     }
 
-    /// Computes the torques `τ_A` of the driven joints from the efforts `u` of the coordinates, and the constraint
-    /// forces.
+    /// Computes the torques `τ_A` of the driven joints from the efforts `u` of the coordinates, and the
+    /// constraint forces.
     fn distribute(&mut self) {
         let Self { n, commands, joints, torques, work, tau, .. } = self;
         let is_driven = |j: usize| matches!(commands[j], JointCommand::Task | JointCommand::Acceleration);

@@ -60,7 +60,7 @@ pub(super) fn inverse_mass<S: Real>(
     }
 }
 
-/// Writes the twist of the base to the first six rows of column `j`.
+/// Writes the acceleration of the base, `twist`, to the first six rows of column `j` of `out`.
 #[inline(always)]
 fn base_rows<S: Real>(twist: Motion<S>, nv: usize, j: usize, out: &mut [S]) {
     let rows = components(Force::new(twist.linear, twist.angular));

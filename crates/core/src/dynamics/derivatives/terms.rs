@@ -105,8 +105,8 @@ impl<S: Real> Derivatives<S> {
         }
     }
 
-    /// Returns the nonzero rows of `∂τ/∂q_j` and `∂τ/∂q̇_j`: the base, the ancestors of `j` and the subtree
-    /// of `j`.
+    /// Returns the nonzero rows of `∂τ/∂q_j` and `∂τ/∂q̇_j`: those of the base, of the ancestors of joint
+    /// `j`, and of the joints in its subtree.
     ///
     /// Must be called exactly once per joint, in descending order.
     #[inline(always)]

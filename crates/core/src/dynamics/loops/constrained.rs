@@ -16,8 +16,8 @@ pub(crate) type Locked<'a> = Option<(&'a [bool], &'a [f64])>;
 /// `loops`. Afterwards [`ClosedLoops::forces`] returns the constraint forces `λ`. Returns the rank of `J`,
 /// which is the number of independent constraints.
 ///
-/// `q`: `(nq,)`; `v`, `tau`, `a` (out): `(nv,)`; `tau[..6]` is a wrench on the base in base axes, N and N m. The
-/// velocity must satisfy the constraints.
+/// `q`: `(nq,)`; `v`, `tau`, `a` (out): `(nv,)`; `tau[..6]` is a wrench on the base, about its origin in base
+/// axes, N and N m. The velocity must satisfy the constraints.
 ///
 /// Source: Featherstone, Rigid Body Dynamics Algorithms, 2008, section 8.3.
 pub fn constrained_forward_dynamics<S: Real>(
@@ -33,8 +33,9 @@ pub fn constrained_forward_dynamics<S: Real>(
     constrained_recursion(model, data, loops, (v, tau), None, a)
 }
 
-/// Computes [`constrained_forward_dynamics`] with the external wrenches stored in `data` and with locked joints.
-/// Requires up-to-date [`kinematics`] in `data`. The holding torques of locked joints are stored in `data`.
+/// Computes [`constrained_forward_dynamics`] with the external wrenches stored in `data` and with locked
+/// joints. Requires up-to-date [`kinematics`] in `data`. The holding torques of locked joints are stored in
+/// `data`.
 pub(crate) fn constrained_recursion<S: Real>(
     model: &Model,
     data: &mut Data<S>,
@@ -108,8 +109,8 @@ impl<S: Real> ClosedLoops<S> {
         }
     }
 
-    /// Adds the response to the constraint forces to `a` and to the accelerations in `data`. Requires the results of
-    /// [`solve`](Self::solve) with the same inertias.
+    /// Adds the response to the constraint forces to `a` and to the accelerations in `data`. Requires the
+    /// results of [`solve`](Self::solve) with the same inertias.
     #[inline(always)]
     pub(super) fn respond(
         &mut self,

@@ -39,8 +39,8 @@ pub(crate) fn solve<S: Real>(a: &mut [S], compliance: &[S], scale: &mut [S], x: 
     rank
 }
 
-/// Computes the factors `A = L D Lᵀ` in place, in the form that [`cholesky_solve`] expects, with `1/D_ii = 0` for
-/// dependent rows. Returns the number of the other rows.
+/// Computes the factors `A = L D Lᵀ` in place, in the form that [`cholesky_solve`] expects, with `1/D_ii = 0`
+/// for dependent rows. Returns the number of the other rows.
 #[inline(always)]
 fn factor<S: Real>(a: &mut [S], m: usize) -> S {
     let mut rank = S::of(0.0);

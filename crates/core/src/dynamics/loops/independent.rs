@@ -6,8 +6,8 @@ use crate::dynamics::data::Data;
 use crate::model::{BASE_NV, Model};
 use crate::spatial::{Scalar, dot};
 
-/// Pivot, relative to the sizes of its row and its column, below which a constraint counts as dependent on those
-/// before it.
+/// Pivot, relative to the sizes of its row and its column, below which a constraint counts as dependent on
+/// those before it.
 const DEPENDENT: f64 = 1e-7;
 /// Smallest lever arm, m, for the comparison of metres and radians; a shorter one may be a rounding error.
 const SHORTEST: f64 = 1e-3;
@@ -19,8 +19,8 @@ impl<S: Scalar> ClosedLoops<S> {
     }
 
     /// Computes the constraints on the joint accelerations, `K q̈ = k` with `k = −K̇ q̇`: `K` is written to
-    /// `jacobian`, `(m, n)`, and `k` to `right`, `(m,)`. Constraints inside a robot do not depend on the motion of
-    /// the base, because both forces of a row act along one line.
+    /// `jacobian`, `(m, n)`, and `k` to `right`, `(m,)`. Constraints inside a robot do not depend on the
+    /// motion of the base, because the two forces of a row are opposite and act along the same line.
     ///
     /// Requires in `data` the kinematics, and the accelerations that the bodies have while no joint
     /// accelerates; [`free_floating_recursion`](crate::dynamics::free_floating_recursion) computes these
@@ -53,10 +53,11 @@ impl<S: Scalar> ClosedLoops<S> {
     }
 }
 
-/// Solution of the joint constraints `K q̇ = 0`, `K q̈ = k` in terms of independent joints: `q̇ = G ẏ`, `q̈ = G ÿ + g`.
+/// Solution of the joint constraints `K q̇ = 0`, `K q̈ = k` in terms of independent joints: `q̇ = G ẏ`,
+/// `q̈ = G ÿ + g`.
 ///
-/// `K` is brought to reduced row echelon form by Gaussian elimination. Each pivot determines the acceleration of
-/// one dependent joint; rows without a pivot are redundant.
+/// `K` is brought to reduced row echelon form by Gaussian elimination. Each pivot determines the acceleration
+/// of one dependent joint; rows without a pivot are redundant.
 ///
 /// Source: Featherstone, Rigid Body Dynamics Algorithms, 2008, section 8.8.
 #[derive(Clone, Debug, Default)]
@@ -90,8 +91,8 @@ impl IndependentJoints {
     /// Chooses the independent joints and computes `G` and `g`. `jacobian` is `K`, `(m, n)`, and `right` is
     /// `k`, `(m,)`. `class` is `(n,)`: joints of a lower class become dependent before those of a higher one,
     /// so that dependent joints of a class depend only on independent joints of the same and of higher
-    /// classes. `is_length` contains, for each row, `(m,)`, and for each joint, `(n,)`, whether its unit is
-    /// m.
+    /// classes. `is_length` contains, for each row, `(m,)`, whether its constraint error is a length, m, and,
+    /// for each joint, `(n,)`, whether its position is one.
     pub fn solve(&mut self, (jacobian, right): (&[f64], &[f64]), class: &[u8], is_length: [&[bool]; 2]) {
         (self.n, self.m) = (class.len(), right.len());
         self.fill(jacobian, right);
@@ -130,8 +131,8 @@ impl IndependentJoints {
         self.column_size.extend(columns.iter().map(size));
     }
 
-    /// Returns the row and the joint of the largest entry in rows and columns without a pivot, among the joints that
-    /// `is_candidate` selects; `None` if no entry exceeds rounding errors.
+    /// Returns the row and the joint of the largest entry in rows and columns without a pivot, among the
+    /// joints that `is_candidate` selects; `None` if no entry exceeds rounding errors.
     fn largest(&self, is_candidate: impl Fn(usize) -> bool) -> Option<(usize, usize)> {
         let (width, mut most, mut found) = (self.width(), DEPENDENT, None);
         for i in (0..self.m).filter(|i| !self.dependent.iter().any(|(_, row)| row == i)) {

@@ -1,8 +1,9 @@
 //! Closed kinematic loops and mimic joints as constraints on the motion of a tree.
 //!
-//! The constraints `φ(q) = 0` have the Jacobian `J`. With the constraint forces `λ`, the equations of motion are
-//! `M a + c = τ + Σ Jᵀ F + Jᵀ λ` and `J a + J̇ v = 0`. Hence `A λ = −(J a_free + J̇ v)` with `A = J M⁻¹ Jᵀ`, and `a =
-//! a_free + M⁻¹ Jᵀ λ`. Products with `M⁻¹` use the articulated-body inertias of the preceding forward dynamics.
+//! The constraints `φ(q) = 0` have the Jacobian `J`. With the constraint forces `λ`, the equations of motion
+//! are `M a + c = τ + Σ Jᵀ F + Jᵀ λ` and `J a + J̇ v = 0`. Hence `A λ = −(J a_free + J̇ v)` with
+//! `A = J M⁻¹ Jᵀ`, and `a = a_free + M⁻¹ Jᵀ λ`. Products with `M⁻¹` use the articulated-body inertias of the
+//! preceding forward dynamics.
 
 mod closing;
 mod constrained;
@@ -49,7 +50,8 @@ pub struct ClosedLoops<S> {
     compliance: Vec<S>,
     /// Scales of the rows, `(m,)`.
     scale: Vec<S>,
-    /// Bodies between the base and the bodies of the constraints, without the base, in ascending order.
+    /// Bodies on the paths from the base to the bodies of the constraints, without the base, in ascending
+    /// order.
     supported: Vec<usize>,
     /// Inverse of the articulated inertia of the whole robot.
     base: InverseArticulated<S>,
@@ -69,7 +71,7 @@ struct Buffers<S> {
     rates: Vec<S>,
     /// Constraint forces before a refinement, `(m,)`.
     before: Vec<S>,
-    /// Generalized forces with those of the constraints, `(nv,)`.
+    /// Generalized forces `τ + Jᵀ λ`, which include those of the constraints, `(nv,)`.
     applied: Vec<S>,
     /// Zeros, `(nv,)`: the velocity and the generalized forces of a robot at rest.
     zeros: Vec<S>,
@@ -126,7 +128,8 @@ impl<S: Real> ClosedLoops<S> {
 
     /// Returns the constraint forces `λ` computed last, `(m,)`, N and N m. Those of a loop are the force and
     /// the moment on its second body about the origin of the second frame, along the constrained directions
-    /// of the first frame; that of a mimic joint is its torque (force).
+    /// of the first frame; that of a distance constraint is the force along the line between the two origins,
+    /// positive if it pushes them apart; that of a mimic joint is its torque (force).
     pub fn forces(&self) -> &[S] {
         &self.force
     }
@@ -148,7 +151,7 @@ impl<S: Real> ClosedLoops<S> {
 
     /// Returns the magnitudes of the linear and of the angular entries of `x`, `(m,)`, that belong to a
     /// closure (index): m and rad for errors, N and N m for forces. The entry of a mimic joint counts as
-    /// angular. Of several SIMD lanes, the first one counts.
+    /// angular. If `S` has several SIMD lanes, the magnitudes are those of the first lane.
     pub fn magnitudes(&self, closure: usize, x: &[S]) -> [f64; 2] {
         let own = &x[self.range_of(closure)];
         let mut squares = [0.0; 2];
@@ -167,9 +170,9 @@ impl<S: Real> ClosedLoops<S> {
         rates
     }
 
-    /// Returns the pivots of the scaled matrix `A` in the last solution, `(m,)`, in the first SIMD lane: the
-    /// part of the mobility of each row that the rows before it do not constrain, and zero for a row that
-    /// depends on them.
+    /// Returns the pivots of the scaled matrix `A` in the last solution, `(m,)`, in the first SIMD lane. The
+    /// pivot of a row is zero if the row depends on the rows before it, and small if it nearly depends on
+    /// them.
     pub(crate) fn pivots(&self) -> impl Iterator<Item = f64> + '_ {
         let m = self.rows.len();
         (0..m)
@@ -195,7 +198,7 @@ impl<S: Real> ClosedLoops<S> {
     }
 }
 
-/// Returns all bodies between the base and `bodies`, without the base, in ascending order.
+/// Returns all bodies on the paths from the base to `bodies`, without the base, in ascending order.
 fn support(nodes: &[Node], bodies: impl Iterator<Item = usize>) -> Vec<usize> {
     let mut is_supported = vec![false; nodes.len()];
     for mut body in bodies {

@@ -76,9 +76,10 @@ impl<S: Real> ClosedLoops<S> {
     }
 }
 
-/// Moves the configuration `q` to the constraints by `δ = −M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁻¹ φ` over all coordinates, repeated
-/// until the error is a rounding error. Locked joints do not move. To first order in `φ`, the centre of mass does
-/// not move. Afterwards `data` holds the poses at `q` and the articulated-body inertias near `q`.
+/// Projects the configuration `q` onto the constraints by steps `δ = −M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁻¹ φ` over all
+/// coordinates, until the error is a rounding error, but by at most three steps. Locked joints do not move.
+/// To first order in `φ`, the centre of mass does not move. Afterwards `data` holds the poses at `q` and the
+/// articulated-body inertias near `q`.
 pub(crate) fn project_configuration<S: Real>(
     model: &Model,
     data: &mut Data<S>,
@@ -100,7 +101,7 @@ pub(crate) fn project_configuration<S: Real>(
             #[inline(always)]
             || {
                 integrate(q, &delta, &mut moved);
-                // lanes without errors keep their bits
+                // the numbers in lanes without errors do not change
                 for (q, moved) in q.iter_mut().zip(&moved) {
                     *q = S::select(is_open, *moved, *q);
                 }
@@ -112,8 +113,8 @@ pub(crate) fn project_configuration<S: Real>(
 }
 
 /// Changes the velocity `v` by `−M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁻¹ J v`, so that it satisfies the constraints. The change
-/// does not affect the momentum. Where rows are nearly dependent, the change is repeated, because its rounding
-/// errors may violate the constraints. Requires the kinematics of `q` and `v`, and the results of
+/// does not affect the momentum. Where rows are nearly dependent, the change is repeated, because its
+/// rounding errors may violate the constraints. Requires the kinematics of `q` and `v`, and the results of
 /// [`project_configuration`] with the same locked joints, in `data`.
 pub(crate) fn project_velocity<S: Real>(
     model: &Model,

@@ -7,11 +7,11 @@ use crate::dynamics::external::FrameWrench;
 use crate::dynamics::free_floating::{FreeFloating, free_floating};
 use crate::model::{Axis, Closure, Constraint, Model};
 
-/// Reduced equations of a robot with closed loops, `M ÿ + c = Gᵀ τ + Q`, and task acceleration `ẍ = J ÿ + d` of one
-/// frame, in terms of the accelerations `ÿ` of independent joints.
+/// Reduced equations of a robot with closed loops, `M ÿ + c = Gᵀ τ + Q`, and task acceleration `ẍ = J ÿ + d`
+/// of one frame, in terms of the accelerations `ÿ` of independent joints.
 ///
-/// `q̇ = G ẏ`, `q̈ = G ÿ + g`, `M = Gᵀ M* G`, `c = Gᵀ (c* + M* g)`, `Q = Gᵀ Q*`, `J = Jg G`, `d = d* + Jg g`, with the
-/// symbols of [`FreeFloating`], whose drift is `d*`.
+/// `q̇ = G ẏ`, `q̈ = G ÿ + g`, `M = Gᵀ M* G`, `c = Gᵀ (c* + M* g)`, `Q = Gᵀ Q*`, `J = Jg G`, `d = d* + Jg g`,
+/// with the symbols of [`FreeFloating`], whose drift is `d*`.
 #[derive(Clone, Debug)]
 pub struct ConstrainedFreeFloating {
     /// Independent joints with `G` and `g`.
@@ -78,7 +78,8 @@ pub fn constrained_free_floating(
     out
 }
 
-/// Adds one to the class of every joint that does not mimic another, so that mimic joints become dependent first.
+/// Adds one to the class of every joint that does not mimic another, so that mimic joints become dependent
+/// first.
 pub(crate) fn add_leaders(model: &Model, class: &mut [u8]) {
     class.iter_mut().for_each(|class| *class += 1);
     for closure in model.closures() {

@@ -25,10 +25,10 @@ impl<S: Real> ClosedLoops<S> {
     }
 
     /// Adds one step of iterative refinement, `A δ = −(J a + J̇ v)`, to the constraint forces `λ`, the
-    /// accelerations `a`, `(nv,)`, and those in `data`, where rows are nearly dependent; other lanes keep
-    /// their bits. The residual is computed from the accelerations of the bodies, so that it does not have
-    /// the rounding errors of `A`. Requires the results of [`solve`](Self::solve) and
-    /// [`respond`](Self::respond), and the velocity `v` and the generalized forces `tau`, `(nv,)`.
+    /// accelerations `a`, `(nv,)`, and those in `data`, in the lanes in which rows are nearly dependent; the
+    /// numbers in other lanes do not change. The residual is computed from the accelerations of the bodies,
+    /// so that it does not have the rounding errors of `A`. Requires the results of [`solve`](Self::solve)
+    /// and [`respond`](Self::respond), and the velocity `v` and the generalized forces `tau`, `(nv,)`.
     ///
     /// Source: Higham, Accuracy and Stability of Numerical Algorithms, 2002, section 12.1.
     pub(super) fn refine(

@@ -20,7 +20,7 @@ struct Term<R> {
     rate: R,
 }
 
-/// Buffers of the responses.
+/// Buffers for the computation of responses.
 #[derive(Debug)]
 pub(super) struct Scratch<S> {
     single: Vec<Term<S>>,
@@ -110,8 +110,8 @@ impl<S: Real> ColumnKernel<S> for UnitResponses<'_, S> {
     }
 }
 
-/// Returns the result for the right-hand side `column`: lane `column` of `x` if `S` has one lane. Otherwise, `x`
-/// holds a single right-hand side, and all of its lanes, which are different states, are returned.
+/// Returns the result for the right-hand side `column`: lane `column` of `x` if `S` has one lane. Otherwise,
+/// `x` holds a single right-hand side, and all of its lanes, which are different states, are returned.
 #[inline(always)]
 fn of_column<S: Real, R: Real>(x: R, column: usize) -> S {
     match S::LANES {
@@ -121,7 +121,8 @@ fn of_column<S: Real, R: Real>(x: R, column: usize) -> S {
 }
 
 /// Returns a scalar that has the number returned by `of` for each row in the lane of its right-hand side; the
-/// lane of the first row is `first`. The other lanes are zero. If `S` has several lanes, there is a single row.
+/// lane of the first row is `first`. The other lanes are zero. If `S` has several lanes, there is a single
+/// row.
 #[inline(always)]
 fn to_columns<S: Real, R: Real>(
     rows: &[Row<S>],
@@ -191,8 +192,8 @@ fn clear<R: Real>(terms: &mut [Term<R>]) {
     }
 }
 
-/// Adds the constraint forces and joint efforts of the rows of a group to the terms of the bodies on which they
-/// act, each in the lane of its column.
+/// Adds the constraint forces and joint efforts of the rows of a group to the terms of the bodies on which
+/// they act, each in the lane of its column.
 #[inline(always)]
 fn add_forces<S: Real, R: Real>(
     terms: &mut [Term<R>],
@@ -248,9 +249,9 @@ fn acceleration<S: Real, R: Real>(
 }
 
 /// Computes the accelerations that the forces and efforts in `terms` cause at rest. Each body has `groups`
-/// consecutive terms, one for each group of right-hand sides. Forces act only on the bodies `loaded`. The
-/// accelerations are computed for the base and for the bodies `moved`, which must include all of their
-/// parents. Both lists are in ascending order.
+/// consecutive terms, one for each group of right-hand sides. Forces act only on the base and on the bodies
+/// `loaded`. The accelerations are computed for the base and for the bodies `moved`, which must include all
+/// of their parents. Both lists are in ascending order.
 #[inline(always)]
 fn respond<S: Real, R: Real>(
     (nodes, bodies): (&[Node], &[BodyData<S>]),
@@ -309,7 +310,7 @@ impl<R: Real> Lifted<R> {
     }
 }
 
-/// Returns a vector in the scalar of the right-hand sides.
+/// Converts a vector to the scalar type of the right-hand sides.
 #[inline(always)]
 fn vector<S: Real, R: Real>(v: Vec3<S>, lift: impl Fn(S) -> R + Copy) -> Vec3<R> {
     v.map(
@@ -318,7 +319,7 @@ fn vector<S: Real, R: Real>(v: Vec3<S>, lift: impl Fn(S) -> R + Copy) -> Vec3<R>
     )
 }
 
-/// Returns a force in the scalar of the right-hand sides.
+/// Converts a force to the scalar type of the right-hand sides.
 #[inline(always)]
 fn force<S: Real, R: Real>(f: Force<S>, lift: impl Fn(S) -> R + Copy) -> Force<R> {
     Force::new(vector(f.linear, lift), vector(f.angular, lift))

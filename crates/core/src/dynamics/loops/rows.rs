@@ -13,7 +13,8 @@ pub(super) struct Row<S> {
     pub(super) efforts: [S; 2],
 }
 
-/// Buffers for the computation of the constraints on the joints, which allocates them when it is first called.
+/// Buffers for the computation of the constraints on the joints, which allocates them when it is first
+/// called.
 #[derive(Clone, Debug, Default)]
 pub(super) struct JointRows<S> {
     /// `J`, row major `(m, nv)`.
@@ -102,7 +103,8 @@ pub(super) fn is_angular(closure: &Closure, row: usize) -> bool {
 
 /// Sets the forces of the rows of a closure. Requires up-to-date poses in `data`.
 ///
-/// Both forces of a row act along one line, so that the constraint changes no momentum.
+/// The two forces (or moments) of a row are opposite and act along the same line, so that the constraint does
+/// not change the momentum.
 #[inline(always)]
 pub(super) fn update<S: Real>(closure: &Closure, data: &Data<S>, rows: &mut [Row<S>]) {
     let Constraint::Frames { kind, frames, .. } = &closure.constraint else { return };
@@ -122,8 +124,8 @@ pub(super) fn update<S: Real>(closure: &Closure, data: &Data<S>, rows: &mut [Row
             [Force::at(-n, Vec3::zero(), placed[0].offset), Force::at(n, Vec3::zero(), placed[1].offset)];
         return;
     }
-    // common point of both forces: the origin of the first frame, or of the second frame if it slides along the
-    // first one, so that the rows are the rates of the errors
+    // common point of both forces: the origin of the first frame, or of the second frame if it slides along
+    // the first one, so that the rows are the rates of the errors
     let points = match kind {
         LoopKind::Prismatic => [placed[0].offset + gap, placed[1].offset],
         _ => [placed[0].offset, placed[1].offset - gap],

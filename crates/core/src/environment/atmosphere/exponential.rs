@@ -49,7 +49,8 @@ impl ExponentialAtmosphere {
         Ok(Self { layers })
     }
 
-    /// Creates the tabulated atmosphere for moderate solar activity, from 0 to above 1000 km.
+    /// Creates the atmosphere with the layers of Vallado's table for moderate solar activity, the last of
+    /// which begins at 1000 km.
     ///
     /// Source: Vallado, Fundamentals of Astrodynamics and Applications, 4th edition, 2013, table 8-4 (U.S.
     /// Standard Atmosphere to 25 km, CIRA-72 above).
@@ -81,7 +82,7 @@ impl Atmosphere for ExponentialAtmosphere {
     }
 }
 
-/// Altitude, km; density, kg/m³; scale height, km.
+/// Layers of the table: altitude of the base, km; density at the base, kg/m³; scale height, km.
 const TABLE: [[f64; 3]; 28] = [
     [0.0, 1.225, 7.249],
     [25.0, 3.899e-2, 6.349],

@@ -23,8 +23,8 @@ pub struct HarrisPriester {
 }
 
 impl HarrisPriester {
-    /// Creates the model with exponent `n`, from 2 (low inclinations) to 6 (polar orbits), and `lag`, rad,
-    /// usually about 30°.
+    /// Creates the model with exponent `n`, from 2 (low inclinations) to 6 (polar orbits), and with the
+    /// angle `lag`, rad, which is usually about π/6 (30°).
     ///
     /// # Errors
     /// [`AtmosphereError::Value`] for an exponent outside 2 to 6 or a lag outside ±π.
@@ -73,7 +73,7 @@ impl HarrisPriester {
 }
 
 impl Default for HarrisPriester {
-    /// Creates the model with an exponent of 4 and a lag of 30°.
+    /// Creates the model with an exponent of 4 and a lag of π/6 (30°).
     fn default() -> Self {
         Self { exponent: 4.0, lag: std::f64::consts::FRAC_PI_6 }
     }
@@ -92,7 +92,7 @@ impl Atmosphere for HarrisPriester {
 
 const G_PER_KM3: f64 = 1e-12;
 
-/// Altitude, km; night and day density, g/km³.
+/// Rows of the table: altitude, km; night density and day density, g/km³.
 const TABLE: [[f64; 3]; 50] = [
     [100.0, 497_400.0, 497_400.0],
     [120.0, 24_900.0, 24_900.0],

@@ -14,8 +14,8 @@ use nalgebra::Vector3;
 /// layers of a table are discontinuous, the jump is displaced by at most this distance.
 const VALID_RADIUS: f64 = 160.0;
 
-/// Spacing of the grid of centres, in m and s: robots close to each other, and successive steps, share a
-/// centre.
+/// Spacing of the grid of centres in space, m, and in time, s. Robots close to each other, and successive
+/// steps, use the same centre.
 const GRID: (f64, f64) = (128.0, 0.125);
 
 /// Altitude difference from which the scale height is computed, m.
@@ -40,8 +40,8 @@ impl LocalAtmosphere {
     /// Computes the local atmosphere about `centre`, axes of `I`, m, at simulation time `time`, s.
     ///
     /// # Errors
-    /// The errors of the model at the centre, and those 100 m below the centre if the model also fails 100 m
-    /// above it.
+    /// The errors of [`AtmospherePoint::new`] and of the model at the centre; if the model fails both 100
+    /// m above and 100 m below the centre, the error below it.
     pub fn new(
         atmosphere: &dyn Atmosphere,
         earth: &Earth,

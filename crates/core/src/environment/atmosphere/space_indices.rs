@@ -24,7 +24,8 @@ pub struct SpaceIndices {
 }
 
 impl SpaceIndices {
-    /// Creates the indices after a check of their ranges.
+    /// Creates the indices from fluxes, 1e-22 W/(m² Hz), and a geomagnetic activity, whose ranges are
+    /// checked.
     ///
     /// # Errors
     /// [`AtmosphereError::Value`] unless each flux is above 0 and below 999.9 and each index is from 0 to
@@ -49,12 +50,13 @@ impl SpaceIndices {
 pub(super) const FLUX: &str = "a flux above 0 and below 999.9 (999.9 marks a gap), in 1e-22 W/(m² Hz)";
 pub(super) const ACTIVITY: &str = "an index from 0 to 400 (Ap, not Kp)";
 
-/// Returns true for a plausible flux; observed daily values are below 500, and 999.9 marks a gap in tables.
+/// Returns true if a value is a plausible flux. Observed daily values are below 500, and 999.9 marks a gap
+/// in tables.
 pub(super) fn is_flux(value: f64) -> bool {
     value > 0.0 && value < 999.9
 }
 
-/// Returns true for a plausible `ap` or `Ap`.
+/// Returns true if a value is in the range of the indices `ap` and `Ap`.
 pub(super) fn is_activity(value: f64) -> bool {
     (0.0..=400.0).contains(&value)
 }

@@ -6,7 +6,7 @@ use super::space_indices::{
 };
 use crate::number_text::count;
 
-/// Names of the columns, as in CelesTrak's files; the eight three-hourly `AP` are last.
+/// Names of the columns, as in CelesTrak's files. The columns of the eight three-hourly indices are last.
 const COLUMNS: [&str; 11] =
     ["F10.7_OBS", "F10.7_OBS_CENTER81", "AP_AVG", "AP1", "AP2", "AP3", "AP4", "AP5", "AP6", "AP7", "AP8"];
 const FLUX: usize = 0;
@@ -29,14 +29,14 @@ pub struct SpaceWeatherTable {
 }
 
 impl SpaceWeatherTable {
-    /// Reads CSV text. The header line contains `DATE` (`2024-03-01`), `F10.7_OBS`, `F10.7_OBS_CENTER81`,
-    /// `AP_AVG` and, for the three-hourly history, `AP1` to `AP8`; other columns are ignored. CelesTrak's
-    /// `SW-All.csv` has this form. Rows are consecutive days. An empty field is a gap, which is an error only
-    /// if a run needs the value.
+    /// Reads a table from CSV text. The header line contains `DATE` (`2024-03-01`), `F10.7_OBS`,
+    /// `F10.7_OBS_CENTER81`, `AP_AVG` and, for the three-hourly history, `AP1` to `AP8`; other columns are
+    /// ignored. CelesTrak's `SW-All.csv` has this form. Rows are consecutive days. An empty field is a
+    /// gap, which is an error only if a run needs the value.
     ///
     /// # Errors
-    /// [`AtmosphereError::Table`], with the number of the line, for a missing column or row, an invalid date
-    /// or a value out of range.
+    /// [`AtmosphereError::Table`], with the number of the line, for a table without rows, a missing
+    /// column, field or day, an invalid date, or a value out of range.
     pub fn from_csv(text: &str) -> Result<Self, AtmosphereError> {
         let wrong = |line: usize, problem: String| AtmosphereError::Table { line: line + 1, problem };
         let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
@@ -111,8 +111,9 @@ impl SpaceWeatherTable {
     /// Returns the indices `seconds` after the start of the UTC day with the modified Julian date `day`.
     ///
     /// # Errors
-    /// [`AtmosphereError::OutsideTable`] for a day that is not in the table;
-    /// [`AtmosphereError::MissingSpaceWeather`] for a gap.
+    /// [`AtmosphereError::OutsideTable`] if the day, or one of the up to three days before it whose values
+    /// are required, is not in the table; [`AtmosphereError::MissingSpaceWeather`] if a required value is
+    /// a gap.
     pub fn at(&self, day: i64, seconds: f64) -> Result<SpaceIndices, AtmosphereError> {
         let daily = self.number(day, DAILY)?;
         let activity = if self.has_history {
@@ -187,7 +188,7 @@ fn modified_julian_date(year: i64, month: i64, day: i64) -> i64 {
     MARCH_2000 + 365 * years + leaps + (153 * from_march + 2) / 5 + day - 1
 }
 
-/// Returns a modified Julian date as text.
+/// Returns a modified Julian date as a text such as `2024-03-01`.
 fn date_of(day: i64) -> String {
     let (year, month, day) = calendar(day);
     format!("{year:04}-{month:02}-{day:02}")

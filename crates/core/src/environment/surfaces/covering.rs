@@ -18,8 +18,8 @@ pub struct Covering {
 }
 
 impl Covering {
-    /// Derives the surface of every body of a system from its shapes. `system` is the number of the system in
-    /// the world, and `model` is its model. Bodies without shapes have no surface.
+    /// Derives the surface of every body of a system from the visual shapes of the body. `system` is the
+    /// number of the system in the world, and `model` is its model. Bodies without shapes have no surface.
     ///
     /// # Errors
     /// The errors of [`Surface::from_shapes`].
@@ -53,8 +53,8 @@ impl Surfaces {
     /// Creates the surfaces from coverings; `counts` holds the number of bodies of each system of the world.
     ///
     /// # Errors
-    /// [`SurfaceError::NoSurfaces`] for an empty list, [`SurfaceError::UnknownBody`], and
-    /// [`SurfaceError::Twice`] for two surfaces on one body.
+    /// [`SurfaceError::NoSurfaces`] for an empty list, [`SurfaceError::UnknownBody`] for a body that does
+    /// not exist, and [`SurfaceError::Twice`] for two surfaces on one body.
     pub fn new(coverings: Vec<Covering>, counts: &[usize]) -> Result<Self, SurfaceError> {
         if coverings.is_empty() {
             return Err(SurfaceError::NoSurfaces);
@@ -72,7 +72,8 @@ impl Surfaces {
         Ok(Self { layout, is_covered, blocks: surfaces.chunks(WIDTH).map(SurfaceBlock::new).collect() })
     }
 
-    /// Derives the surface of every body of one robot from its shapes. Bodies without shapes have no surface.
+    /// Derives the surface of every body of one robot from the visual shapes of the body. Bodies without
+    /// shapes have no surface.
     ///
     /// # Errors
     /// The errors of [`Surface::from_shapes`], and [`SurfaceError::NoShape`] if no body has a shape.

@@ -20,7 +20,7 @@ pub(super) struct Cylinder<T> {
 }
 
 impl Cylinder<f64> {
-    /// Gathers the cylinders of eight bodies, one per body.
+    /// Stores the cylinders of eight bodies in columns; `cylinders(i)` returns the cylinder of body `i`.
     pub(super) fn block(cylinders: impl Fn(usize) -> Self) -> Cylinder<Column8> {
         Cylinder {
             radius: Column8::of(|i| cylinders(i).radius),

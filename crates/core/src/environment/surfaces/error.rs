@@ -24,9 +24,9 @@ pub enum SurfaceError {
         specular = short(*specular), diffuse = short(*diffuse)
     )]
     Reflection {
-        /// Fraction reflected like a mirror.
+        /// Fraction of the light that is reflected specularly.
         specular: f64,
-        /// Fraction reflected diffusely.
+        /// Fraction of the light that is reflected diffusely.
         diffuse: f64,
     },
     /// No body has a surface.

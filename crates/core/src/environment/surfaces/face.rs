@@ -24,7 +24,7 @@ impl Face<f64> {
         Self { area, normal, centroid, moment: centroid.cross(normal) }
     }
 
-    /// Gathers the faces of eight bodies, one per body.
+    /// Stores the faces of eight bodies in columns; `faces(i)` returns the face of body `i`.
     pub(super) fn block(faces: impl Fn(usize) -> Self) -> Face<Column8> {
         Face {
             area: Column8::of(|i| faces(i).area),

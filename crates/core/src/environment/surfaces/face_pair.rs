@@ -32,7 +32,7 @@ impl FacePair<f64> {
         Self { area, half: 0.5 * distance, normal, centre, moment: centre.cross(normal) }
     }
 
-    /// Gathers the face pairs of eight bodies, one per body.
+    /// Stores the face pairs of eight bodies in columns; `pairs(i)` returns the face pair of body `i`.
     pub(super) fn block(pairs: impl Fn(usize) -> Self) -> FacePair<Column8> {
         FacePair {
             area: Column8::of(|i| pairs(i).area),
@@ -54,7 +54,7 @@ impl FacePair<Column8> {
 }
 
 impl<S: Real> FacePair<S> {
-    /// Returns `x` if `speed >= 0`, so that the face on the side of the normal is exposed, and `-x`
+    /// Returns `x` if `speed` is not negative, which exposes the face on the side of the normal, and `-x`
     /// otherwise.
     #[inline(always)]
     fn facing(speed: S, x: S) -> S {

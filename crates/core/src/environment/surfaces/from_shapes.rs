@@ -25,8 +25,8 @@ pub(super) fn parts_of_body(model: &Model, body: usize, optics: &Optics) -> Resu
     Ok(parts)
 }
 
-/// Pose of a shape: rotation from shape axes to body axes, and origin relative to the centre of mass of the
-/// body.
+/// Pose of a shape: rotation from shape axes to body axes, and position of the origin of the shape
+/// relative to the centre of mass of the body, m, in body axes.
 struct ShapePose {
     rot: Mat3<f64>,
     pos: Vec3<f64>,
@@ -92,8 +92,9 @@ impl ShapePose {
         Cylinder { radius, length, axis: self.axis(2), centre: self.pos }
     }
 
-    /// Adds a hemisphere, centred at `height`, m, on the z axis and bulging towards +z or −z (`end` 1 or −1),
-    /// as faces. Its projected area is exact along z, and within 2 % in other directions.
+    /// Adds a hemisphere of the given radius, m, approximated by faces. Its centre is at `height`, m, on
+    /// the z axis of the shape, and it bulges towards +z or −z (`end` is 1 or −1). Its projected area is
+    /// exact along z, and within 2 % in other directions.
     fn add_dome(&self, radius: f64, height: f64, end: f64, parts: &mut Parts) {
         const RINGS: usize = 4;
         const SECTORS: usize = 12;

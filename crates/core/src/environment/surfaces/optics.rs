@@ -30,7 +30,7 @@ impl Optics {
         Ok(Self { specular, diffuse })
     }
 
-    /// Gathers the coefficients of eight bodies.
+    /// Stores the coefficients of eight bodies in columns; `optics(i)` returns those of body `i`.
     pub(super) fn block(optics: impl Fn(usize) -> Self) -> Optics<Column8> {
         Optics { specular: Column8::of(|i| optics(i).specular), diffuse: Column8::of(|i| optics(i).diffuse) }
     }

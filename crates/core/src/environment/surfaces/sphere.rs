@@ -16,7 +16,7 @@ pub(super) struct Sphere<T> {
 }
 
 impl Sphere<f64> {
-    /// Gathers the spheres of eight bodies, one per body.
+    /// Stores the spheres of eight bodies in columns; `spheres(i)` returns the sphere of body `i`.
     pub(super) fn block(spheres: impl Fn(usize) -> Self) -> Sphere<Column8> {
         Sphere {
             area: Column8::of(|i| spheres(i).area),

@@ -1,4 +1,4 @@
-//! Sums over the parts of a surface, and the wrenches that result from them.
+//! Sums over the parts of a surface, from which the wrenches are computed.
 
 use crate::environment::wrenches::WrenchLanes;
 use crate::spatial::{Real, Sym3, Vec3};

@@ -38,7 +38,8 @@ impl Surface {
         Ok(Self { parts, drag_coefficient, optics: Optics::default() })
     }
 
-    /// Derives the surface of a body from its shapes: boxes, cylinders, capsules and spheres.
+    /// Derives the surface of a body from its visual shapes, which must be boxes, cylinders, capsules or
+    /// spheres.
     ///
     /// # Errors
     /// [`SurfaceError::UnknownBody`] if `model` has no body with this index, [`SurfaceError::NoShape`] for a

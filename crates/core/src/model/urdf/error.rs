@@ -185,7 +185,7 @@ fn way_out(kind: &str) -> String {
     advice.to_owned()
 }
 
-/// Returns the names as a list, shortened if there are many.
+/// Returns the first five names in quotation marks, separated by commas, and an ellipsis if there are more.
 pub(super) fn list(names: &[String]) -> String {
     const SHOWN: usize = 5;
     let shown: Vec<String> = names.iter().take(SHOWN).map(|name| format!("'{name}'")).collect();

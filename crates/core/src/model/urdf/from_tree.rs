@@ -160,7 +160,7 @@ mod tests {
     use std::fmt::Debug;
     use urdf_rs::{Collision, Inertial, Joint, Mass, Material, Visual};
 
-    /// Contains every field of the schema, so that the result can be compared with the result of urdf-rs.
+    /// URDF that contains every field of the schema, to compare the result with that of urdf-rs.
     const ALL: &str = "<robot name='r'><material name='m'><color rgba='0.1 0.2 0.3 1'/></material>
         <link name='a'>
           <inertial><origin xyz='1 2 3' rpy='0.1 0.2 0.3'/><mass value='4'/>

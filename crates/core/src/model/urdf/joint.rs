@@ -11,9 +11,11 @@ use crate::number_text::{short, unlike};
 use nalgebra::Vector3;
 use urdf_rs::{JointLimit, JointType, Mimic as MimicOf};
 
-/// Reads the axis, limits, friction, rotor inertia, spring and mimic of a joint. A joint with several degrees of
-/// freedom becomes a chain of joints with one degree of freedom each. `is_taken` returns true for names that
-/// already occur in the file.
+/// Reads the origin, axis, limits, damping, friction, rotor inertia, spring and mimic coupling of a joint, as
+/// far as they apply to its type.
+///
+/// A joint with several degrees of freedom becomes a chain of joints with one degree of freedom each.
+/// `is_taken` returns true for names that already occur in the file.
 pub(super) fn read_joints(
     joint: &JointElement<'_>,
     is_taken: impl Fn(&str) -> bool,
@@ -60,7 +62,7 @@ pub(super) fn read_joints(
 }
 
 /// Reads the element `<spring>` of a joint, an extension of URDF with the attributes `stiffness`,
-/// `cubic_stiffness` and `rest_position`. At least one stiffness must be given; the defaults are zero.
+/// `cubic_stiffness` and `rest_position`. At least one stiffness must be given; omitted values are zero.
 fn spring(joint: Element<'_>) -> Result<Option<JointSpring>, UrdfError> {
     let Some(element) = joint.child("spring") else { return Ok(None) };
     let [stiffness, cubic] = [element.number("stiffness")?, element.number("cubic_stiffness")?];
@@ -83,7 +85,8 @@ fn unread(kind: &str) -> &'static [&'static str] {
 
 /// Converts limits of urdf-rs, in which infinity means no limit. `bounds` is the `<limit>` element, or `None`
 /// if the joint has no position limits. If one position limit is missing, its value is 0, as URDF specifies;
-/// if both are missing, the position is unlimited.
+/// if both are missing, the position is unlimited. Position limits in reversed order and negative velocity
+/// and effort limits are ignored, with a warning.
 fn limits(
     name: &str,
     read: &JointLimit,

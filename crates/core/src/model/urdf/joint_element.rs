@@ -12,7 +12,7 @@ pub(super) struct JointElement<'a> {
     pub(super) child: &'a str,
 }
 
-/// Reads the name, the type and the links of a joint.
+/// Reads the type of the joint `name` and the names of the links that it connects.
 pub(super) fn read_joint_element<'a>(
     element: Element<'a>,
     name: &'a str,

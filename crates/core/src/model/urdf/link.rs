@@ -56,7 +56,8 @@ pub(super) fn read_link(
     Ok(result)
 }
 
-/// Reads mass and inertia. Returns `None` if there is no `<mass>`, as urdfdom does.
+/// Reads the mass, centre of mass and inertia from `<inertial>`. Returns `None` if there is no `<mass>`, as
+/// urdfdom does.
 fn read_inertial(element: Element<'_>, context: &mut ReadContext<'_>) -> Result<Option<Inertial>, UrdfError> {
     let owner = element.owner;
     let mut note = |text: String| context.warnings.push(ModelWarning::Note(text));

@@ -1,4 +1,4 @@
-//! Reader of `<material>`: colours, which are defined once and to which shapes then refer by name.
+//! Reader of `<material>`: colours, which are defined once and which shapes refer to by name.
 
 use super::element::Element;
 use super::error::UrdfError;

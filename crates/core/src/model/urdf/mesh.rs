@@ -8,11 +8,11 @@ use std::path::{Path, PathBuf};
 
 /// Finder of mesh files. It records the missing ones and those whose location was guessed.
 pub(super) struct Meshes<'a> {
-    /// Folder of the URDF file.
+    /// Folder of the URDF file; `None` if the URDF was given as text without a folder.
     folder: Option<&'a Path>,
     /// Folders that are packages or contain packages.
     packages: &'a [PathBuf],
-    /// Results by name, cached because many links refer to the same file.
+    /// Results of the search for each name, cached because many links refer to the same file.
     known: HashMap<String, Option<Found>>,
     /// True for each folder that exists; cached to avoid a system call for each file in a missing folder.
     folders: HashMap<PathBuf, bool>,
@@ -64,7 +64,7 @@ impl<'a> Meshes<'a> {
         }
     }
 
-    /// Returns the path of a mesh file if it exists.
+    /// Returns the path of a mesh file if it exists. A missing file is not recorded.
     pub(super) fn find(&mut self, name: &str) -> Option<String> {
         self.look_up(name).map(|found| found.path)
     }

@@ -32,7 +32,7 @@ impl MeshName {
         (!name.is_empty() && !name.contains("://")).then(|| Self::File(name.replace('\\', "/").into()))
     }
 
-    /// Returns the path below the package, or the whole path.
+    /// Returns the path below the package or, for a file outside packages, the whole path.
     pub(super) fn path(&self) -> &Path {
         match self {
             Self::InPackage { rest, .. } => rest,

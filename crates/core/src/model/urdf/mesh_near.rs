@@ -11,7 +11,7 @@ const PARENTS: usize = 3;
 
 /// Finder of files by the end of their path. Each folder is listed only once, because many links have meshes.
 pub(super) struct Near<'a> {
-    /// Folder of the URDF file.
+    /// Folder of the URDF file; `None` if the URDF was given as text without a folder.
     folder: Option<&'a Path>,
     /// Folders that are packages or contain packages.
     packages: &'a [PathBuf],

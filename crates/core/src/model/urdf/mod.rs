@@ -70,7 +70,7 @@ pub fn from_file(path: &Path, options: &Options<'_>) -> Result<Model, UrdfError>
         .map_err(|error| error.in_file(path))
 }
 
-/// Prefixes the path of the URDF file to the reasons for which collision shapes were skipped.
+/// Inserts the path of the URDF file before each reason why a collision shape was skipped.
 fn with_file_in_reasons(mut model: Model, path: &Path) -> Model {
     if model.description.links.iter().any(|link| !link.skipped_collisions.is_empty()) {
         for link in &mut Arc::make_mut(&mut model.description).links {
@@ -153,7 +153,8 @@ fn read_robot(
     built.map_err(|error| UrdfError::new(None, UrdfProblem::Model(error)))
 }
 
-/// Returns the owner string, such as `link 'hand'`, of each link or joint (`tag`), in order.
+/// Returns the phrase for each link or joint in error messages, such as `link 'hand'`, in the order of the
+/// file. `tag` is `link` or `joint`.
 fn owners(robot: Node<'_, '_>, tag: &'static str) -> Vec<String> {
     Element::new(robot, "")
         .children(tag)

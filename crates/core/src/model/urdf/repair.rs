@@ -9,8 +9,9 @@ use super::tokens::{Kind, Token, tokens};
 use crate::model::ModelWarning;
 use std::ops::Range;
 
-/// Converts `xml` to well-formed XML, and returns a warning as well if elements outside the robot were
-/// removed:
+/// Returns `xml` converted to well-formed XML, and a warning if elements outside the robot were removed.
+///
+/// The conversion makes these changes:
 ///
 /// - only the outermost `<robot>`, or else the first element, is kept; text after the first zero byte is
 ///   dropped;

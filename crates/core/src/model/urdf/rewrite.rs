@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 /// Largest number of prefixes in a file, limited because the parser compares each prefix with all others.
 const MOST_PREFIXES: usize = 1000;
 
-/// Writer of the converted text.
+/// Writer that converts the tokens of a malformed text to well-formed XML.
 pub(super) struct Writer<'a> {
     out: String,
     prefixes: BTreeSet<&'a str>,

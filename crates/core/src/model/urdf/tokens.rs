@@ -8,9 +8,9 @@
 pub(super) enum Kind {
     Text,
     Comment,
-    /// `<?…?>`, including the XML declaration.
+    /// A processing instruction or the XML declaration, `<?…?>`.
     Instruction,
-    /// `<!DOCTYPE …>` and the declarations in it.
+    /// A document type, `<!DOCTYPE …>`, or a declaration in it.
     Declaration,
     CData,
     Open,

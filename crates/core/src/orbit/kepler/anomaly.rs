@@ -67,11 +67,12 @@ pub(super) fn mean_from_hyperbolic(e: f64, e_minus_one: f64, hyperbolic: f64) ->
     e_minus_one * hyperbolic + e * sinh_minus_x(hyperbolic, hyperbolic.sinh())
 }
 
-/// Eccentricity below which [`solve_ellipse`] uses [`solve_nearly_circular`]; from it on,
-/// [`solve_any_ellipse`].
+/// Eccentricity below which [`solve_ellipse`] uses [`solve_nearly_circular`]; for higher eccentricities, it
+/// uses [`solve_any_ellipse`].
 const NEARLY_CIRCULAR: f64 = 0.1;
 
-/// Solves Kepler's equation `M = E - e sin E` for `E`, given `M` (`mean`) in [-π, π] and `0 ≤ e < 1`.
+/// Solves Kepler's equation `M = E - e sin E`, given `M` (`mean`), rad, in [-π, π] and `0 ≤ e < 1`, and
+/// returns the sine and cosine of `E/2`.
 #[inline(always)]
 pub(super) fn solve_ellipse<S: Real>(e: S, one_minus_e: S, mean: S) -> HalfAnomaly<S> {
     let is_nearly_circular = S::less(e, S::of(NEARLY_CIRCULAR));
@@ -164,7 +165,8 @@ fn solve_any_ellipse<S: Real>(e: S, one_minus_e: S, mean: S) -> HalfAnomaly<S> {
     HalfAnomaly { sin: S::select(S::less(mean, of(0.0)), -up, up), cos: cos * cos_h - sin * sin_h }
 }
 
-/// Solves Kepler's equation `M = e sinh H - H` for `H`, given any `M` (`mean`) and `e > 1`.
+/// Solves Kepler's equation `M = e sinh H - H`, given any `M` (`mean`) and `e > 1`, and returns the
+/// hyperbolic sine and cosine of `H/2`.
 ///
 /// Newton's method for `|M|` starts above the solution. From there the iterates decrease monotonically,
 /// because `e sinh H - H` is convex for `H > 0`.
@@ -199,8 +201,8 @@ pub(super) fn solve_parabola(b: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Returns the residual divided by the effect of rounding errors of `M` and `E`; values up to 8 are
-    /// accepted.
+    /// Returns the residual of Kepler's equation as a multiple of the effect of the rounding errors of `M`
+    /// and `E`; values up to 8 are accepted.
     fn residual_in_roundings(e: f64, one_minus_e: f64, m: f64) -> f64 {
         let half = solve_ellipse(e, one_minus_e, m);
         let eccentric = 2.0 * half.sin.atan2(half.cos);

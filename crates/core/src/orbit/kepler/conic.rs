@@ -225,7 +225,7 @@ impl Conic {
     }
 }
 
-/// Wraps an angle to [-π, π], for `|angle| ≤ 3π`.
+/// Wraps an angle, rad, to [-π, π], for `|angle| ≤ 3π`.
 #[inline(always)]
 pub(super) fn wrap<S: Real>(angle: S) -> S {
     let (pi, turn) = (S::of(PI), S::of(TAU));

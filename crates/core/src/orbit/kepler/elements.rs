@@ -110,10 +110,10 @@ impl Kepler {
 
     /// Returns the classical elements of this orbit, from which [`Kepler::new`] rebuilds the orbit.
     ///
-    /// Node and periapsis are in [0, 2π). The mean anomaly of an ellipse is in [-π, π], which keeps its
-    /// digits near the periapsis. For a circular orbit the periapsis, and for an equatorial orbit the node,
-    /// depend on rounding errors, but their sums with the phase are accurate. Near a parabola, the size is
-    /// the semi-latus rectum and the phase is the time of periapsis.
+    /// The node and the argument of periapsis are in [0, 2π). The mean anomaly of an ellipse is in [-π, π],
+    /// which keeps its digits near the periapsis. For a circular orbit the periapsis, and for an equatorial
+    /// orbit the node, depend on rounding errors, but their sums with the phase are accurate. Near a
+    /// parabola, the size is the semi-latus rectum and the phase is the time of periapsis.
     pub fn elements(&self) -> Elements {
         let w_i = self.p_i.cross(&self.q_i);
         let tilt = w_i.x.hypot(w_i.y);

@@ -19,13 +19,13 @@ use nalgebra::{Rotation3, Unit, Vector3};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SecularJ2 {
     kepler: Kepler,
-    /// `Ω̇`, rad/s.
+    /// Rate `Ω̇` of the node, rad/s.
     node_rate: f64,
-    /// `ω̇`, rad/s.
+    /// Rate `ω̇` of the argument of periapsis, rad/s.
     periapsis_rate: f64,
     /// Ratio `Ṁ/n` of the rate of the mean anomaly to the mean motion.
     pace: f64,
-    /// Unit vector along the angular momentum at the epoch.
+    /// Unit vector along the angular momentum at the epoch, axes of `I`.
     normal: Unit<Vector3<f64>>,
 }
 

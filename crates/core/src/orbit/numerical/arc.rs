@@ -10,7 +10,7 @@ use std::sync::{PoisonError, RwLock};
 const TOLERANCE: f64 = 1e-14;
 /// Length of the first step, in units of `√(r³/μ)` with the distance `r` from the planet's centre.
 const FIRST: f64 = 0.1;
-/// Length, in the same units, up to which a step counts as too short, so that the integration fails.
+/// Length, in units of `√(r³/μ)`, up to which a step counts as too short, so that the integration fails.
 const SHORTEST: f64 = 1e-9;
 /// Ratio of the length of the next step to the estimated longest length that the tolerance permits.
 const SAFETY: f64 = 0.9;
@@ -107,7 +107,7 @@ impl Arcs {
         (last < begin || towards(&self.after, last)) && (first >= begin || towards(&self.before, first))
     }
 
-    /// Computes the next step of `half` and adds it.
+    /// Computes the next step of `half` and appends it to the steps of `half`.
     fn extend(
         &self,
         half: &mut Half,

@@ -13,7 +13,7 @@ use std::sync::LazyLock;
 /// Number of nodes of a step, `S`.
 pub(super) const NODES: usize = 9;
 
-/// One vector per node or per Legendre polynomial.
+/// Array with one vector per node or per Legendre polynomial.
 pub(super) type Samples = [Vector3<f64>; NODES];
 
 /// Lobatto's quadrature rule on [-1, 1].

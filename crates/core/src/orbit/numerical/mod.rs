@@ -48,8 +48,8 @@ impl Numerical {
         Ok(Self { gravity, axes: Axes::default(), arcs })
     }
 
-    /// Returns the same orbit with `axes` as the axes of its states and of gravity. The numbers of the state
-    /// do not change.
+    /// Returns the same orbit with `axes` as the axes of its states and of gravity. The components of
+    /// the initial state do not change.
     #[must_use]
     pub fn with_axes(self, axes: Axes) -> Self {
         Self { axes, ..self }

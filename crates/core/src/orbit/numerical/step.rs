@@ -83,7 +83,7 @@ impl Step {
         2.0 * ((t - self.start.time) / self.length) - 1.0
     }
 
-    /// Returns the acceleration at `t`, m/s².
+    /// Returns the acceleration, m/s², at time `t`, s, which may lie outside the step.
     fn acceleration(&self, t: f64) -> Vector3<f64> {
         weighted(&Legendre::at(self.place(t)).value, &self.spectrum)
     }

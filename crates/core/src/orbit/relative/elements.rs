@@ -22,7 +22,7 @@ struct Regular {
     a: f64,
     /// Mean argument of latitude, `M + ω`, rad.
     u: f64,
-    /// `e cos ω` and `e sin ω`.
+    /// Components `e cos ω` and `e sin ω` of the eccentricity vector.
     e: [f64; 2],
     i: f64,
     node: f64,
@@ -122,7 +122,7 @@ pub fn relative_elements_rows(
     Ok(())
 }
 
-/// Computes [`deputy_state`] for many pairs: `chief` and `out` hold positions (m) and velocities (m/s), (B,
+/// Computes [`deputy_state`] for many chiefs: `chief` and `out` hold positions (m) and velocities (m/s), (B,
 /// 3) each, and `elements` is (B, 6).
 ///
 /// # Errors
@@ -150,7 +150,7 @@ pub fn deputy_states(
     Ok(())
 }
 
-/// Wraps an angle to [-π, π].
+/// Wraps an angle, rad, to [-π, π].
 fn nearest(angle: f64) -> f64 {
     let turns = (angle / TAU).round();
     let angle = angle - turns * TAU;

@@ -13,7 +13,8 @@ use nalgebra::{Matrix3, Matrix6, Vector3};
 /// the orbit radius `R`.
 ///
 /// # Errors
-/// [`OrbitError::NotFinite`] for `t` or `n`, and [`OrbitError::NotPositive`] for `n`.
+/// [`OrbitError::NotFinite`] and [`OrbitError::TooLarge`] for `t` or `n`, and [`OrbitError::NotPositive`] for
+/// `n`.
 ///
 /// Source: Clohessy and Wiltshire, J. Aerospace Sciences 27(9), 1960.
 pub fn hill_transition(n: f64, t: f64) -> Result<Matrix6<f64>, OrbitError> {

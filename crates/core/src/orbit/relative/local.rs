@@ -47,8 +47,8 @@ pub fn to_local(
     Ok([rho, rot_il.tr_mul(&(v - reference.velocity)) - rate_l.cross(&rho)])
 }
 
-/// Returns the position and velocity in `I` from `rho` (m) and `rho_dot` (m/s) in the local frame. This is
-/// the inverse of [`to_local`].
+/// Returns the position (m) and velocity (m/s) in `I` from `rho` (m) and `rho_dot` (m/s) in the local
+/// frame. This is the inverse of [`to_local`].
 ///
 /// # Errors
 /// [`OrbitError::UndefinedFrame`] for a reference at rest or in rectilinear motion.
@@ -83,7 +83,8 @@ pub fn to_local_rows(
     rows(orbit, frame, times, given, out, to_local)
 }
 
-/// Computes [`from_local`] at each of `times`; shapes as in [`to_local_rows`].
+/// Computes [`from_local`] at each of `times`. The arrays have the shapes and units of those of
+/// [`to_local_rows`].
 ///
 /// # Errors
 /// The errors of [`to_local_rows`].

@@ -29,7 +29,7 @@ impl EarthModel {
         }
     }
 
-    /// Returns the constants that the theory derives from the model.
+    /// Returns the constants of the model in the units of SGP4.
     pub(super) fn earth(self) -> Earth {
         // kₑ = 60/√(aₑ³/μ)
         let ke = |a: f64| 60.0 / (a * a * a / (self.mu() / 1e9)).sqrt();

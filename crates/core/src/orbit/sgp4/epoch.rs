@@ -13,7 +13,8 @@ pub struct Epoch {
 }
 
 impl Epoch {
-    /// Creates the epoch from a year and a day of the year, which is 1.0 at midnight of 1 January.
+    /// Creates the epoch from a year and a day of the year, which is 1.0 at the midnight that begins
+    /// 1 January.
     pub(super) fn of_year(year: i64, day_of_year: f64) -> Self {
         let whole = day_of_year.floor();
         Self {

@@ -13,7 +13,7 @@ pub(super) type Five = [f64; 5];
 /// Perturbing body on its apparent elliptic orbit around the Earth.
 #[derive(Clone, Debug)]
 pub(super) struct ThirdBody {
-    /// Secular rates of the five quantities, per minute.
+    /// Secular rates of the five quantities of [`Five`], per minute.
     pub(super) rates: Five,
     /// Amplitudes of `F₂`, `F₃` and `sin f` ([`ThirdBody::waves()`]) for each of the five quantities.
     waves: [[f64; 3]; 5],

@@ -88,13 +88,14 @@ impl Sgp4 {
         self.model
     }
 
-    /// Returns the period that corresponds to the mean motion, s.
+    /// Returns the period, s, that corresponds to the mean motion of the element set.
     pub fn period(&self) -> f64 {
         60.0 * TAU / self.elements.mean_motion
     }
 
-    /// Returns position (m) and velocity (m/s) in TEME axes at `t`, s after the epoch of the elements, or an
-    /// error if the position is below the surface or `t` is more than a hundred years from that epoch.
+    /// Returns the position (m) and velocity (m/s) in TEME axes, `t` s after the epoch of the elements, or an
+    /// error if SGP4 has no state, if the position is below the surface, or if `t` is more than a hundred
+    /// years from that epoch.
     fn above_surface(&self, t: f64) -> Result<(Vector3<f64>, Vector3<f64>), OrbitError> {
         if finite("time", t)?.abs() > LONGEST_TIME {
             return Err(OrbitError::TimeOutOfRange { time: t, epoch: 0.0, limit: LONGEST_TIME });
@@ -174,11 +175,11 @@ impl Orbit for Sgp4 {
         }
     }
 
-    /// Returns the state `t` s after the epoch.
+    /// Returns the state in TEME axes, `t` s after the epoch.
     ///
     /// # Errors
-    /// [`OrbitError::Sgp4`] where SGP4 has no state, [`OrbitError::NotFinite`], and
-    /// [`OrbitError::TimeOutOfRange`] for times more than a hundred years from the epoch.
+    /// [`OrbitError::Sgp4`] where SGP4 has no state, [`OrbitError::NotFinite`] for a `t` that is not finite,
+    /// and [`OrbitError::TimeOutOfRange`] for times more than a hundred years from the epoch.
     fn state(&self, t: f64) -> Result<OrbitState, OrbitError> {
         let (position, velocity) = self.above_surface(t)?;
         // the step is 16 times shorter if the propagation fails within 90 s of `t`

@@ -41,7 +41,7 @@ struct Fine {
     anomaly: f64,
     /// `(1 + η cos M₀)³` with the mean anomaly `M₀` at the epoch.
     cube0: f64,
-    /// `sin M₀`.
+    /// `sin M₀` with the mean anomaly `M₀` at the epoch.
     sin0: f64,
 }
 
@@ -156,8 +156,8 @@ impl NearEarth {
         Self { epoch, anomaly_rate, perigee_rate, node_rate, node_drag, b_star, c1, c4: cc4, fine }
     }
 
-    /// Returns the mean elements `t` minutes after the epoch. The drag terms that change the size of the
-    /// orbit are returned beside them.
+    /// Returns the mean elements with secular perturbations, `t` minutes after the epoch, together with the
+    /// drag terms of the semi-major axis, the eccentricity and the mean longitude, which are applied later.
     #[inline(always)]
     pub(super) fn at<S: Real>(&self, t: S) -> SecularElements<S> {
         let (of, t2, epoch) = (S::of, t * t, &self.epoch);

@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 
 /// Smallest eccentricity passed to the periodic terms.
 const MIN_ECCENTRICITY: f64 = 1e-6;
-/// Mean eccentricities for which the theory is defined.
+/// Range of mean eccentricities for which the theory is defined.
 const ECCENTRICITIES: std::ops::Range<f64> = -0.001..1.0;
 
 /// Propagator of an element set, with precomputed constants.

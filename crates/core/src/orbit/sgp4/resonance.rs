@@ -31,9 +31,9 @@ pub(super) struct Resonance {
 /// Period of the resonance, and definition of the resonant longitude with the sidereal time `θ`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
-    /// One day: `λ = M + Ω + ω - θ`.
+    /// A period of one day, with `λ = M + Ω + ω - θ`.
     Day,
-    /// Half a day: `λ = M + 2 Ω - 2 θ`.
+    /// A period of half a day, with `λ = M + 2 Ω - 2 θ`.
     HalfDay,
 }
 

@@ -46,7 +46,7 @@ impl<'a> Line<'a> {
         Ok(line)
     }
 
-    /// Returns the columns `first..=last`, counted from 1.
+    /// Returns the text in the columns `first..=last`, counted from 1.
     fn columns(&self, first: usize, last: usize) -> &'a str {
         &self.text[first - 1..last]
     }
@@ -118,7 +118,8 @@ impl MeanElements {
     /// `check_checksum` is true.
     ///
     /// # Errors
-    /// [`ElementSetError`] with the number of the line and, for invalid characters, the column.
+    /// [`ElementSetError`] for a malformed line, with its number and, for an invalid field, the column; for
+    /// lines of different satellites; and for an element outside its range.
     ///
     /// Source: the column table of CelesTrak's "NORAD Two-Line Element Set Format".
     pub fn from_tle(line1: &str, line2: &str, check_checksum: bool) -> Result<Self, ElementSetError> {
@@ -155,8 +156,8 @@ impl MeanElements {
     }
 }
 
-/// Parses the catalogue number: five digits, or a letter and four digits (Alpha-5: A is 10; I and O are not
-/// used).
+/// Parses the catalogue number: up to five digits, or a letter and four digits (Alpha-5: A is 10; I and O
+/// are not used).
 fn satellite_number(text: &str) -> Option<u32> {
     const LETTERS: &str = "ABCDEFGHJKLMNPQRSTUVWXYZ";
     let text = text.trim();

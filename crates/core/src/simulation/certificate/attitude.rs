@@ -49,8 +49,8 @@ pub(crate) struct Attitude {
     since: f64,
 }
 
-/// Safety factor for an interval that ends with a jump, where `snap` is the value of the neighbouring
-/// intervals.
+/// Safety factor for the error bound of an interval that ends with a jump. The bound uses the `snap` of the
+/// neighbouring intervals.
 const JUMP: f64 = 4.0;
 
 impl Attitude {

@@ -26,7 +26,7 @@ pub(super) struct Balance {
     duration: f64,
 }
 
-/// Momentum, impulse and energy in the first row.
+/// Time, momentum, impulse and energy in the first row.
 #[derive(Clone, Copy, Debug)]
 struct First {
     time: f64,
@@ -87,8 +87,9 @@ impl Balance {
         relative(self.angular, self.angular_scale.max(moments))
     }
 
-    /// Returns the error of the energy balance relative to a scale. The scale is the sum of the magnitudes of
-    /// the work done, the energy relative to the centre of mass, and a fraction of the energy in W that
+    /// Returns the error of the energy balance relative to a scale. The scale is the sum of three energies:
+    /// the sum `Σ |ΔW|` of the work between rows or, if larger, `work_done`, the same sum over all steps, J;
+    /// the largest energy relative to the centre of mass; and a fraction of the largest energy in W that
     /// covers its rounding error. The scale is at least the energy of a motion that covers a millionth of the
     /// robot's size in the duration of the run.
     pub(super) fn energy(&self, work_done: f64) -> f64 {

@@ -86,8 +86,8 @@ impl BaseRows {
     /// `(v₀ + v₁)/2 − h²/8 ȧ`. The mean of the inertial forces over the interval differs from `found` by a
     /// third of this change.
     ///
-    /// The jerk of the interval is `ȧ = 2/h ((v₁ − v₀)/h − a₀)`. It includes changes of the acceleration under
-    /// constant torques, which can be fast for light links even while a heavy load moves slowly.
+    /// The jerk of the interval is `ȧ = 2/h ((v₁ − v₀)/h − a₀)`. It includes changes of the acceleration
+    /// under constant torques, which can be fast for light links even while a heavy load moves slowly.
     fn jerk(&mut self, model: &Model, h: f64, before: &TraceRow<'_>, found: Force<f64>) -> [f64; 2] {
         if model.joints().is_empty() {
             return [0.0; 2];

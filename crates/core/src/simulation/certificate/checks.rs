@@ -32,10 +32,10 @@ pub(super) const ATTITUDE: f64 = 0.1;
 ///
 /// An integrator that integrates momentum conserves both momenta by construction; the other values are
 /// independent checks. Checks that compare successive steps are evaluated during the run if only some steps
-/// are recorded or if captures may connect the system to others. They are `None` for an adaptive integrator,
-/// whose rows are interpolated, and for an external engine if not every step is recorded. Without external
-/// forces, however, the check of the centre of mass does not depend on the spacing of the rows and is always
-/// available.
+/// are recorded, or if the group of the system has events or contacts with friction. They are `None` for an
+/// adaptive integrator, whose rows are interpolated, and for an external engine if not every step is
+/// recorded. Without external forces, however, the check of the centre of mass does not depend on the spacing
+/// of the rows and is always available.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Certificate {
     /// Drift of linear momentum: `max |P − P₀ − ∫F dt|` with the external force `F`, relative to the largest
@@ -97,8 +97,8 @@ pub struct PairChecks {
 }
 
 impl PairChecks {
-    /// Returns the larger error of each check in two intervals. For the base rows, this is the error closer
-    /// to its gate.
+    /// Returns, for each check, the larger of the errors of two intervals. For the base rows, this is the
+    /// error that is larger relative to its gate, together with that gate.
     pub(crate) fn worse(&self, other: &Self) -> Self {
         let ratio = |checks: &Self| checks.base_rows_residual_rel * (1.0 / checks.base_rows_gate);
         let rows = if ratio(self) >= ratio(other) { self } else { other };
@@ -110,12 +110,12 @@ impl PairChecks {
     }
 }
 
-/// Check of a certificate: a value and its gate.
+/// Check of a certificate or of an event: a value and its gate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Check {
-    /// Name of the field of [`Certificate`].
+    /// Name of the checked quantity; for a certificate, that of its field.
     pub name: &'static str,
-    /// Value of the field.
+    /// Value of the quantity.
     pub value: f64,
     /// Largest value that passes the check.
     pub gate: f64,

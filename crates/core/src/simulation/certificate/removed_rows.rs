@@ -9,8 +9,8 @@ use crate::model::{BASE_NQ, Model};
 use crate::simulation::trace::Trace;
 use std::ops::Range;
 
-/// Smallest number of last rows that [`drop_checked_rows`] keeps: a trial step may remove the last rows
-/// again, and the last row may lack its acceleration.
+/// Smallest number of last rows that [`drop_checked_rows`] keeps. They cannot be checked yet, because a trial
+/// step may remove the last rows again and the last row may lack its acceleration.
 const LEAST_KEPT: usize = 16;
 
 /// Number of rows at the start of a trace that are already in the checks of its removed rows: the first row
@@ -18,7 +18,8 @@ const LEAST_KEPT: usize = 16;
 const CHECKED: usize = 3;
 
 /// Removes all rows except the first one and the last `keep` (at least 16), after adding them to
-/// [`Trace::removed`], so that the certificate is that of all rows. Each column must have all rows.
+/// [`Trace::removed`], so that the certificate still covers all rows. Every column of the trace must have the
+/// same number of rows.
 pub fn drop_checked_rows(trace: &mut Trace, keep: usize, model: &Model) {
     let rows = trace.rows().max(1);
     let widths: Vec<usize> = trace.columns().map(|(_, column)| column.len() / rows).collect();

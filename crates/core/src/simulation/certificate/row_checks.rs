@@ -17,7 +17,8 @@ pub struct RowChecks {
     pub(super) attitude: Attitude,
     /// True if no external wrench has acted in these rows.
     pub(super) is_free: bool,
-    /// Largest opening of a closed loop, m or rad; `None` without loops and mimic joints.
+    /// Largest opening of a closed loop or deviation of a mimic joint from its leader, m or rad; `None`
+    /// without loops and mimic joints.
     pub(super) opening: Option<f64>,
     /// Smallest and largest position of each joint, rad or m.
     pub(super) joints: Vec<(f64, f64)>,
@@ -40,7 +41,7 @@ impl RowChecks {
         }
     }
 
-    /// Returns these sums after the removal of `count` further rows from the trace.
+    /// Returns these sums with the number of removed rows increased by `count`.
     pub(crate) fn with_removed(mut self, count: usize) -> Self {
         self.removed += count;
         self

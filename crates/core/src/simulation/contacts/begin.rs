@@ -7,9 +7,9 @@ use crate::contact::{Bristle, ContactError, Friction, FrictionForce};
 use crate::simulation::contact_state::ContactState;
 use crate::spatial::Vec3;
 
-/// Two pieces count as far apart if the gap between their bounding spheres exceeds the sum of this fraction of
-/// the smaller reach and the distance by which they may approach each other within the step. The reach of a
-/// piece is the radius of its bounding sphere about the origin of its frame.
+/// Two pieces count as far apart if the gap between their bounding spheres exceeds the sum of this fraction
+/// of the smaller reach and the distance by which they may approach each other within the step. The reach of
+/// a piece is the radius of its bounding sphere about the origin of its frame.
 pub(super) const FAR: f64 = 0.1;
 /// Fraction of the smaller reach that is subtracted from the gap between the pieces themselves to obtain
 /// [`Touching::clearance`].
@@ -18,8 +18,8 @@ const CLEAR: f64 = 0.01;
 pub(super) const TRAVEL: f64 = 3.0;
 /// Sticking bristles without deflection.
 const AT_REST: Bristle = Bristle { deflection: Vec3 { x: 0.0, y: 0.0, z: 0.0 }, is_slipping: false };
-/// Distance at which pieces touch after a step of length zero, relative to the rounding error of a distance.
-/// The kinematics before and after such a step differ by more than that error.
+/// Largest gap at which pieces count as touching after a step of length zero, in units of the rounding error
+/// of a distance. The kinematics before and after such a step differ by more than that error.
 const TOUCHING: f64 = 1e3;
 /// Relative tolerance within which the margin to a change of mode counts as zero.
 const REACHED: f64 = 1e-9;
@@ -100,9 +100,9 @@ impl Touching {
         self.sides.iter().map(|side| side.reach).fold(f64::MAX, f64::min)
     }
 
-    /// Returns true if the pieces cannot touch while they travel the distance `travel`, m, towards each other,
-    /// according to their bounding spheres or to the gap that an earlier step computed. The result is the same
-    /// as with the present gap.
+    /// Returns true if the pieces cannot touch while they travel the distance `travel`, m, towards each
+    /// other, according to their bounding spheres or to the gap that an earlier step computed. The result is
+    /// the same as if the present gap were computed.
     fn stays_apart(&mut self, motions: &[SideMotion; 2], travel: f64) -> bool {
         if self.has_touched() {
             return false;
@@ -114,8 +114,8 @@ impl Touching {
         self.takes_clearance(travel)
     }
 
-    /// Subtracts `travel`, m, from the clearance and returns true if the clearance exceeds `travel`; otherwise
-    /// sets the clearance to zero and returns false.
+    /// Subtracts `travel`, m, from the clearance and returns true if the clearance exceeds `travel`;
+    /// otherwise sets the clearance to zero and returns false.
     fn takes_clearance(&mut self, travel: f64) -> bool {
         let is_clear = self.clearance > travel;
         self.clearance = if is_clear { self.clearance - travel } else { 0.0 };

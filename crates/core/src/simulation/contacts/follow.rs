@@ -35,9 +35,9 @@ impl Contacts {
         }
     }
 
-    /// Begins the touches of those contacts with an impact law that touch at `t`, s, but did not touch before,
-    /// and adds records of their touch-downs to `happened`. `points` has all points at which such contacts
-    /// touch.
+    /// Begins the touches of those contacts with an impact law that touch at `t`, s, but did not touch
+    /// before, and adds records of their touch-downs to `happened`. `points` has all points at which such
+    /// contacts touch.
     pub(super) fn begin_touches(&mut self, t: f64, points: &[TouchedPoint]) {
         for point in points.iter().filter(|point| point.velocity[0] <= ImpactLaw::REST_SPEED) {
             let touching = &self.list[point.number];

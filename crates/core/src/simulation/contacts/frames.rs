@@ -27,7 +27,8 @@ pub(super) struct Frames {
 }
 
 impl Frames {
-    /// Returns the index of the frame at `place` (tree, frame) in this list, to which a new frame is added.
+    /// Returns the index of the frame at `place` (tree, frame) in this list, after adding the frame if the
+    /// list does not contain it.
     pub(super) fn number(&mut self, place: (usize, usize)) -> usize {
         self.places.iter().position(|known| *known == place).unwrap_or_else(|| {
             self.places.push(place);
@@ -41,7 +42,7 @@ impl Frames {
         self.places.len()
     }
 
-    /// Discards the stored motions, before those of another state are computed.
+    /// Discards the stored motions, which must be done before the motions of another state are computed.
     pub(super) fn forget(&mut self) {
         self.motions.fill(None);
     }

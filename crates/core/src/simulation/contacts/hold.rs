@@ -1,9 +1,9 @@
 //! Contact forces between pieces with an impact law that rest on each other.
 //!
 //! The forces are constant during a step, in the axes of the first side. They are chosen such that the
-//! velocities at the end of the step satisfy the conditions of the impact law without restitution. Trial steps
-//! determine them: the velocities at the end of a step of length `h` are modelled as `u = b + h W F`, with the
-//! forces `F` and the matrix `W` at the start of the step, and every trial step corrects `b`.
+//! velocities at the end of the step satisfy the conditions of the impact law without restitution. Trial
+//! steps determine them: the velocities at the end of a step of length `h` are modelled as `u = b + h W F`,
+//! with the forces `F` and the matrix `W` at the start of the step, and every trial step corrects `b`.
 
 use super::Contacts;
 use super::mode::Phase;
@@ -50,9 +50,9 @@ impl Contacts {
         self.has_impact_laws() && self.near.iter().any(|&number| self.list[number].is_resting())
     }
 
-    /// Returns the problem for the forces in a step of length `h`, s, that starts at `state`; gaps and overlaps
-    /// are corrected within the time `correction`, s. Requires the kinematics of `state`, relative to W, in the
-    /// trees.
+    /// Returns the impulse problem that determines the forces between resting pieces in a step of length `h`,
+    /// s, that starts at `state`; gaps and overlaps are corrected within the time `correction`, s. Requires
+    /// the kinematics of `state`, relative to W, in the trees.
     pub(in crate::simulation) fn hold<S: Real>(
         &mut self,
         [h, correction]: [f64; 2],
@@ -171,9 +171,9 @@ impl Contacts {
 }
 
 impl Hold {
-    /// Returns the largest coefficient of friction for which a force exists at a sliding point, if the point
-    /// needs a force and its own coefficient is not smaller; otherwise `None`. `reached` has the velocities at
-    /// the end of a trial step, m/s.
+    /// Returns the largest coefficient of friction for which a force exists at the point with index `number`,
+    /// if the point slides, needs a force and has a coefficient that is not smaller; otherwise `None`.
+    /// `reached` has the velocities at the end of a trial step, m/s.
     fn painleve(&self, number: usize, reached: &[f64]) -> Option<f64> {
         let (HeldPoint { law, slip, .. }, n, row) = (&self.points[number], reached.len(), 3 * number);
         let speed = slip[0].hypot(slip[1]);
@@ -190,9 +190,9 @@ impl Hold {
 }
 
 impl Touching {
-    /// Finds the points at which the pieces rest on each other at the start of a step. If the number of points
-    /// has not changed, they keep the forces of the last step. If no point touches, the pieces no longer rest
-    /// on each other.
+    /// Finds the points at which the pieces rest on each other at the start of a step. If the number of
+    /// points has not changed, they keep the forces of the last step. If no point touches, the pieces no
+    /// longer rest on each other.
     pub(super) fn find_resting_points(&mut self, motions: &[SideMotion; 2]) -> Result<(), ContactError> {
         if !self.is_resting() {
             return Ok(());

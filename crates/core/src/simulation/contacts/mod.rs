@@ -1,5 +1,6 @@
-//! Contacts between the bodies of a run: compliant forces at the stages of a step, modes that change only
-//! between steps, and the length of steps while bodies touch.
+//! Contacts between the bodies of a run: compliant forces at the stages of a step, impacts and resting
+//! contacts of pieces with an impact law, modes that change only between steps, and the length of steps while
+//! bodies touch.
 
 mod begin;
 mod bound_gaps;
@@ -58,7 +59,7 @@ const FEW: usize = 16;
 pub(crate) struct Contacts {
     list: Vec<Touching>,
     /// Indices, in ascending order, of the pairs whose states the simulation integrates: all pairs that are
-    /// not far apart, or all pairs with an external engine.
+    /// not far apart or, if an external engine computes the forces, all pairs.
     near: Vec<usize>,
     /// Buffer for the indices of pairs that may be near.
     candidates: Vec<usize>,
@@ -88,7 +89,7 @@ pub(crate) struct Contacts {
     pub(super) open_energies: [f64; 2],
     /// True if changes between sticking and slipping do not end a step.
     pub(super) ignores_slip: bool,
-    /// Touches of the declared contacts.
+    /// Present or last touch of each declared contact, with the totals of its touches.
     touches: Vec<Touch>,
     /// Sums over the pieces of each declared contact at the start of the step.
     samples: Vec<Sample>,
@@ -265,9 +266,9 @@ impl Contacts {
         }));
     }
 
-    /// Determines the modes for the step from `t` to `end`, s, and returns the end of the step, which is
-    /// earlier than `end` while bodies touch. The function reduces the contact states in `state` to those of
-    /// the near pairs. Requires the kinematics of `state` in the trees.
+    /// Determines the modes for the step from `t` to `end`, s, and returns the end of the step, which may be
+    /// earlier than `end` while bodies touch or approach each other. The function reduces the contact states
+    /// in `state` to those of the near pairs. Requires the kinematics of `state` in the trees.
     pub(super) fn begin<S: Real>(
         &mut self,
         (t, end): (f64, f64),
@@ -362,7 +363,7 @@ impl Touching {
         self.mode.phase.is_closed() || self.is_resting()
     }
 
-    /// Returns the names of both links, as text.
+    /// Returns the quoted names of the links of both sides, joined by "and", for error messages.
     fn links<S: Real>(&self, trees: &[Tree<'_, S>]) -> String {
         let frame = |side: &Side| &trees[side.place.0].model.frames()[side.place.1].name;
         let [a, b] = [&self.sides[0], &self.sides[1]].map(frame);

@@ -14,10 +14,10 @@ use crate::spatial::Real;
 pub(in crate::simulation) struct SavedContacts {
     /// Modes of all pairs of pieces.
     pub(in crate::simulation) modes: Vec<Mode>,
-    /// Touches of the declared contacts.
+    /// Present or last touch of each declared contact, with the totals of its touches.
     pub(in crate::simulation) touches: Vec<Touch>,
-    /// Points at which the pieces of each pair rest on each other, `None` for pairs that do not; empty if no
-    /// contact has an impact law.
+    /// For each pair, the points at which its pieces rest on each other, or `None` while they do not rest;
+    /// empty if no contact has an impact law.
     pub(in crate::simulation) resting: Vec<Option<Vec<RestingPoint>>>,
 }
 
@@ -114,7 +114,7 @@ impl Contacts {
         });
     }
 
-    /// Writes the indices of the pairs that may not be far apart in the step from `t` to `end`, s, to
+    /// Writes the indices of the pairs that are possibly not far apart in the step from `t` to `end`, s, to
     /// `candidates`, and sets the phase of the other pairs to [`Phase::Far`].
     pub(super) fn find_candidates<S: Real>(
         &mut self,

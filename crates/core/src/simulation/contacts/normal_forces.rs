@@ -5,9 +5,9 @@ use super::Contacts;
 use crate::control::NormalForce;
 
 impl Contacts {
-    /// Writes the normal forces on the system with index `system` in the group to `out`. They are those at the
-    /// state for which [`Self::begin`] determined the modes. `body` maps the index of a frame of the system to
-    /// the index of its body.
+    /// Writes the normal forces on the system with index `system` in the group to `out`. They are those at
+    /// the state for which [`Self::begin`] determined the modes. `body` maps the index of a frame of the
+    /// system to the index of its body.
     pub(in crate::simulation) fn normal_forces(
         &self,
         system: usize,

@@ -13,8 +13,8 @@ pub(super) struct ContactAt {
     pub(super) places: [(usize, usize); 2],
     /// Position of the point in W, m.
     pub(super) at: Vec3<f64>,
-    /// Unit vectors in W along which the three rows are measured: the normal from the first side to the second,
-    /// and two tangents.
+    /// Unit vectors in W along which the three rows are measured: the normal from the first side to the
+    /// second, and two tangents.
     pub(super) axes: [Vec3<f64>; 3],
 }
 
@@ -36,8 +36,8 @@ struct Part {
 
 /// Responses to unit impulses in all rows of an impulse problem.
 pub(super) struct Responses {
-    /// Parts of each row: one for each tree on which it acts, that is, two for a contact between two trees and
-    /// otherwise one.
+    /// Parts of each row: one for each tree on which it acts, that is, two for a contact between two trees
+    /// and otherwise one.
     rows: Vec<Vec<Part>>,
 }
 
@@ -52,8 +52,8 @@ struct At<'a> {
 
 impl Responses {
     /// Computes the responses at the configurations in `states`. The rows are those of `points`, three for
-    /// each, followed by those of `stops`. `locked` returns, for a tree (index), an array that is true for the
-    /// joints whose rates do not change.
+    /// each, followed by those of `stops`. `locked` returns, for a tree (index), an array that is true for
+    /// the joints whose rates do not change.
     pub(super) fn new<S: Real>(
         trees: &[Tree<'_, S>],
         states: &[TreeState<S>],
@@ -107,8 +107,8 @@ impl Responses {
         matrix
     }
 
-    /// Returns the change of velocity of each tree, `(nv,)`, that the impulses `p` cause. It is empty for trees
-    /// on which no impulse acts.
+    /// Returns the change of velocity of each tree, `(nv,)`, that the impulses `p` cause. It is empty for
+    /// trees on which no impulse acts.
     pub(super) fn changes(&self, trees: usize, p: &[f64]) -> Vec<Vec<f64>> {
         let mut changes = vec![Vec::new(); trees];
         for (row, p) in self.rows.iter().zip(p) {
@@ -134,8 +134,8 @@ impl<'a> At<'a> {
         Self { model, q, data, loops: ClosedLoops::new(model, model.closures()), locked }
     }
 
-    /// Returns the Jacobian of the velocity of the material point of `frame` at `point`, times `sign`; one row
-    /// for each of the three axes of the point.
+    /// Returns the Jacobian of the velocity of the material point of `frame` at `point`, times `sign`; one
+    /// row for each of the three axes of the point.
     fn jacobian(&self, frame: usize, point: &ContactAt, sign: f64) -> [Vec<f64>; 3] {
         let nv = self.model.nv();
         let mut twist = vec![0.0; 6 * nv];

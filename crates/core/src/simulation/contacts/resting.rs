@@ -8,10 +8,12 @@ use crate::contact::ContactError;
 use crate::geometry::ContactPoint;
 use crate::spatial::Vec3;
 
-/// Gap, relative to the smaller reach of the two pieces, up to which points of the pieces touch.
+/// Gap, relative to the smaller reach of the two pieces, up to which points of the pieces count as touching.
 const TOUCHING: f64 = 1e-9;
-/// The same for pieces that rest on each other, whose gap includes integration errors; also the depth, relative
-/// to the smaller reach, at which a step of such pieces ends because other points have begun to touch.
+/// Gap, relative to the smaller reach, up to which points of pieces that rest on each other count as
+/// touching; it is larger than [`TOUCHING`] because it must include integration errors. Also the depth,
+/// relative to the smaller reach, at which a step of such pieces ends because other points have begun to
+/// touch.
 const RESTING: f64 = 1e-6;
 /// Distance between two points, relative to the smaller reach, below which they count as the same point.
 const SAME: f64 = 0.1;
@@ -24,8 +26,8 @@ impl Touching {
         self.rigid.as_ref().is_some_and(|rigid| rigid.points.is_some())
     }
 
-    /// Returns true if the pieces rest on each other at a point near `position`, which is relative to the frame
-    /// of the first side, m.
+    /// Returns true if the pieces rest on each other at a point near `position`, which is relative to the
+    /// frame of the first side, m.
     pub(super) fn rests_near(&self, position: Vec3<f64>) -> bool {
         let points = self.rigid.iter().flat_map(|rigid| &rigid.points).flatten();
         let limit = SAME * self.smaller_reach();
@@ -38,8 +40,8 @@ impl Touching {
         relative * self.smaller_reach() + ROUNDINGS * self.rounding(motions)
     }
 
-    /// Returns the points at which the pieces touch, each with its gap, m. These are the contact points of the
-    /// shapes and, unless it is near one of them, the midpoint of the witness points.
+    /// Returns the points at which the pieces touch, each with its gap, m. These are the contact points of
+    /// the shapes and, unless it is near one of them, the midpoint of the witness points.
     pub(super) fn rigid_points(
         &self,
         motions: &[SideMotion; 2],
@@ -64,8 +66,8 @@ impl Touching {
     }
 
     /// Returns the margin, m, of pieces with an impact law at the depth `depth`, m: their distance while they
-    /// are apart, and the distance from the depth at which other points begin to touch while they rest on each
-    /// other.
+    /// are apart, and the distance from the depth at which other points begin to touch while they rest on
+    /// each other.
     pub(super) fn rigid_margin(&self, depth: f64) -> f64 {
         if self.is_resting() { RESTING * self.smaller_reach() - depth } else { -depth }
     }

@@ -36,8 +36,8 @@ impl RestingPoint {
         n * self.force[0] + s * self.force[1] + t * self.force[2]
     }
 
-    /// Returns the position, in W, m, of the contact point in `found` that is closest to this resting point, or
-    /// of the resting point itself if `found` is empty. `a` is the motion of the first side.
+    /// Returns the position, in W, m, of the contact point in `found` that is closest to this resting point,
+    /// or of the resting point itself if `found` is empty. `a` is the motion of the first side.
     pub(super) fn present(&self, found: &[ContactPoint], a: &SideMotion) -> Vec3<f64> {
         let moved = a.frame.to_common(self.at);
         let place = |own: &ContactPoint| (own.point_a + own.point_b) * 0.5;
@@ -48,8 +48,8 @@ impl RestingPoint {
 }
 
 impl Rigid {
-    /// Returns the resultant of the forces between pieces that rest on each other; `None` if no point exerts a
-    /// normal force. Each force acts at the contact point in `found` that is closest to its resting point.
+    /// Returns the resultant of the forces between pieces that rest on each other; `None` if no point exerts
+    /// a normal force. Each force acts at the contact point in `found` that is closest to its resting point.
     pub(super) fn resultant(&self, found: &[ContactPoint], [a, b]: &[SideMotion; 2]) -> Option<Resultant> {
         let points = self.points.as_ref()?;
         let force: f64 = points.iter().map(|point| point.force[0]).sum();

@@ -33,8 +33,8 @@ struct Rates {
 
 impl Rates {
     /// Computes the frequencies `√(k' W)` and the decay rates `c' W`, 1/s, from the reciprocal effective mass
-    /// `W` in `mode`, and the tangent stiffness `k'` and the tangent damping `c'` at the largest depth `depth`,
-    /// m.
+    /// `W` in `mode`, and the tangent stiffness `k'` and the tangent damping `c'` at the largest depth
+    /// `depth`, m.
     fn of(law: &ContactLaw, mode: &Mode, depth: f64) -> Self {
         let [normal, tangential, turning] = mode.mobility;
         // slipping bristles have a constant length and do not oscillate

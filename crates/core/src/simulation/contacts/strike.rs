@@ -13,8 +13,9 @@ use crate::spatial::{Real, Vec3};
 /// Point at which pieces with an impact law touch.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TouchedPoint {
-    /// Indices of the pair of pieces in the list of near pairs, and in the list of all pairs.
+    /// Index of the pair of pieces in the list of near pairs.
     pub(super) near: usize,
+    /// Index of the pair of pieces in the list of all pairs.
     pub(super) number: usize,
     pub(super) place: ContactAt,
     pub(super) law: ImpactLaw,
@@ -119,8 +120,8 @@ impl Contacts {
         Ok(())
     }
 
-    /// Solves for the impulses at `points` and at joint stops, and applies them. Replaces the velocities of the
-    /// points by those after the impact.
+    /// Solves for the impulses at `points` and at joint stops, and applies them. Replaces the velocities of
+    /// the points by those after the impact.
     fn apply_impulses<S: Real>(
         &self,
         trees: &mut [Tree<'_, S>],
@@ -246,7 +247,8 @@ impl Contacts {
     }
 }
 
-/// Returns the impulse on the second side, N s, in W axes, from its components `p` along the axes of the point.
+/// Returns the impulse on the second side, N s, in W axes, from its components `p` along the axes of the
+/// point.
 fn impulse_of(point: &TouchedPoint, p: &[f64]) -> Vec3<f64> {
     let [n, s, t] = point.place.axes;
     n * p[0] + s * p[1] + t * p[2]

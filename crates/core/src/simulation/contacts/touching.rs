@@ -27,10 +27,11 @@ pub(super) struct Touching {
     /// True if the forces at several points are the gradient of their elastic energy.
     pub(super) is_conservative: bool,
     pub(super) mode: Mode,
-    /// Distance, m, by which the pieces may approach each other before the gap must be computed again: the gap
-    /// that was computed last, less a margin and less the distance that the pieces may have travelled since.
+    /// Distance, m, by which the pieces may approach each other before the gap must be computed again: the
+    /// gap that was computed last, less a margin and less the distance that the pieces may have travelled
+    /// since.
     pub(super) clearance: f64,
-    /// True if a connection of an external engine holds both links.
+    /// True if a connection of an external engine holds both links together.
     pub(super) is_held: bool,
     /// Largest depth, m, that the motion at the start of the step will reach.
     pub(super) deepest: f64,
@@ -176,7 +177,7 @@ impl Touching {
 
     /// Returns the work of the normal force, J, that is neither stored nor dissipated while polyhedra press
     /// on each other. An error of the integrator or a jump of the elastic energy causes such work. It is 0
-    /// for other shapes and in other phases.
+    /// for other shapes, in other phases, and if the forces are not the gradient of the elastic energy.
     pub(super) fn open_energy(&self, loading: &Loading, state: &ContactState) -> f64 {
         let is_exact = self.is_conservative
             && self.mode.phase == Phase::Pressing
@@ -185,8 +186,8 @@ impl Touching {
         pressure.map_or(0.0, |pressure| state.normal_work - state.normal_loss - pressure.elastic)
     }
 
-    /// Returns the margins to the next changes of mode, each negative beyond the change: of the gap or depth,
-    /// m, of the normal force, and of friction.
+    /// Returns the margins to the next changes of mode, each negative beyond the change: that of the gap or
+    /// depth, m, that of the normal force, and that of friction.
     pub(super) fn margins(&self, loading: &Loading) -> [f64; 3] {
         let Loading { depth, rate, .. } = *loading;
         let Some(law) = &self.law else {
@@ -231,8 +232,8 @@ impl Loading {
         -friction - self.torque() * self.spin
     }
 
-    /// Returns the time derivative of the state of the contact, with the angular impulse about `center` in W,
-    /// m.
+    /// Returns the time derivative of the state of the contact. Its angular impulse is about the point
+    /// `center`, in W, m.
     pub(super) fn rates(&self, center: Vec3<f64>) -> ContactRate {
         ContactRate {
             slip: self.friction.map_or(self.sliding, |friction| friction.elastic_rate),

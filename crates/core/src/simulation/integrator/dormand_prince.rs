@@ -160,8 +160,8 @@ impl<S: Real> DormandPrince<S> {
         steps.fold(f64::INFINITY, f64::min)
     }
 
-    /// Writes the state at `t`, s, within the last step to `state`, by dense output. The base twist has not
-    /// yet been projected onto the momentum.
+    /// Writes the state at `t`, s, within the last step to `state`, by dense output. The base twist is not
+    /// projected onto the momentum.
     pub(super) fn interpolate(&self, stages: &mut Stages<S>, t: f64, state: &mut State<S>) {
         let Stages { start, sum, first, .. } = stages;
         let h = self.span.1 - self.span.0;
@@ -176,8 +176,9 @@ impl<S: Real> DormandPrince<S> {
     }
 }
 
-/// Returns the largest rate of base and joints in the first lane, rad/s. The linear velocity of the base is
-/// divided by the length `size`, m; rates of prismatic joints in m/s are treated as rad/s.
+/// Returns the largest of the velocities `v` of base and joints in the first lane, rad/s, or, if `v` contains
+/// accelerations, the largest acceleration, rad/s². The linear entries of the base are divided by the length
+/// `size`, m; those of prismatic joints, in m/s or m/s², are treated as angular ones.
 fn fastest<S: Real>(v: &[S], size: f64) -> f64 {
     let linear = Vec3::from_slice(v).norm().lane(0) / size;
     let angular = Vec3::from_slice(&v[3..]).norm().lane(0);

@@ -66,8 +66,8 @@ impl<S: Real> Integration<S> {
     }
 
     /// Writes the state at `t`, s, within the last step of the adaptive integrator to `state`. The base twist
-    /// has not yet been projected onto the momentum. Fixed-step integrators have no dense output and leave
-    /// `state` unchanged.
+    /// is not projected onto the momentum. Fixed-step integrators have no dense output and leave `state`
+    /// unchanged.
     pub(crate) fn interpolate(&mut self, t: f64, state: &mut State<S>) {
         if let Some(method) = &self.dormand_prince {
             method.interpolate(&mut self.stages, t, state);

@@ -25,6 +25,7 @@ pub(crate) struct StepSettings {
     pub(crate) time_step: f64,
     /// Time between two updates of the controllers, s; zero without controllers.
     pub(crate) control_period: f64,
-    /// Planned duration of the run, or the longest interval between two cuts of an open-ended run, s.
+    /// Planned duration of the run, or, for an open-ended run, the longest interval between two instants at
+    /// which a step must end, s.
     pub(crate) duration: f64,
 }

@@ -21,7 +21,8 @@ pub(crate) struct Stages<S> {
     pub(crate) first: Vec<FirstStage<S>>,
 }
 
-/// First stage of one tree, for velocities relative to W.
+/// Acceleration, external force and velocity of the moving frame of one tree at the first stage of a step,
+/// relative to W.
 pub(crate) struct FirstStage<S> {
     /// Acceleration at the start of the step, `(nv,)`, m/s² and rad/s².
     pub(crate) acceleration: Vec<S>,
@@ -79,7 +80,7 @@ impl<S: Real> Stages<S> {
     }
 
     /// Completes the step that ended at `state`: refers its velocities to W instead of the moving frames of
-    /// the step.
+    /// the step and, in a run with contacts, the angular impulses of the trees to their own centres of mass.
     pub(super) fn finish(
         &self,
         equations: &EquationsOfMotion<'_, S, impl ExternalLoads<S>>,

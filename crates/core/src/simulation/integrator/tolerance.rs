@@ -155,7 +155,8 @@ struct SystemStep<'a, 's, S> {
     tree: &'a Tree<'s, S>,
     start: &'a TreeState<S>,
     trial: &'a TreeState<S>,
-    /// Error estimate: fifth-order less fourth-order solution.
+    /// Error estimate per unit time: mean rates of the fifth-order solution less those of the fourth-order
+    /// solution.
     sum: &'a TreeRate<S>,
     h: f64,
     size: f64,

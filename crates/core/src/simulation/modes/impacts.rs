@@ -6,8 +6,8 @@ use crate::simulation::tree::Tree;
 use crate::simulation::tree_state::TreeState;
 use crate::spatial::{Force, Motion, Real};
 
-/// Mobility of a joint, relative to its mobility in the tree without loops and held joints, below which the joint
-/// counts as immobile.
+/// Mobility of a joint, relative to its mobility in the tree without loops and held joints, below which the
+/// joint counts as immobile.
 const IMMOBILE: f64 = 1e-10;
 
 impl<S: Real> Tree<'_, S> {
@@ -56,8 +56,8 @@ impl<S: Real> Tree<'_, S> {
         self.modes.restitution[j]
     }
 
-    /// Adds the energy `lost`, J, that an impact of joint `j` on its stop dissipates to the dissipated energies
-    /// in `state`.
+    /// Adds the energy `lost`, J, that an impact of joint `j` on its stop dissipates to the dissipated
+    /// energies in `state`.
     pub(in crate::simulation) fn add_stop_loss(&self, j: usize, lost: f64, state: &mut TreeState<S>) {
         state.dissipated += S::of(lost);
         if let Some(share) = self.shares.iter().position(|joints| joints.contains(&j)) {
@@ -66,8 +66,8 @@ impl<S: Real> Tree<'_, S> {
     }
 
     /// Reverses the rate of joint `j` by an impulse, with the coefficient of restitution `e`; 0 stops the
-    /// joint. Returns the impulse, N m s or N s, and the energy lost, J; both are zero for a joint that loops and
-    /// other held joints already keep at rest, whose rate is a rounding error. Requires and updates the
+    /// joint. Returns the impulse, N m s or N s, and the energy lost, J; both are zero for a joint that loops
+    /// and other held joints already keep at rest, whose rate is a rounding error. Requires and updates the
     /// kinematics like [`Tree::resolve_impacts`].
     pub(in crate::simulation) fn strike(&mut self, j: usize, e: f64, state: &mut TreeState<S>) -> (f64, f64) {
         let rate = state.v[BASE_NV + j].lane(0);
@@ -85,8 +85,8 @@ impl<S: Real> Tree<'_, S> {
         let lost = -0.5 * (1.0 - e) * impulse * rate;
         self.add_stop_loss(j, lost, state);
         self.project_momentum(state);
-        // the drives of joints with prescribed motion do work as well, because they keep their rates during the
-        // impulse
+        // the drives of joints with prescribed motion do work as well, because they keep their rates during
+        // the impulse
         state.work +=
             if self.modes.given().is_empty() { S::of(-lost) } else { self.kinetic_energy(state) - before };
         (impulse, lost)
@@ -98,8 +98,8 @@ impl<S: Real> Tree<'_, S> {
     }
 
     /// Writes the change of velocity caused by a unit impulse with the sign `sign`, 1 or −1, at joint `j` to
-    /// `scratch`. Returns `(M⁻¹)_jj`, the change of the rate of that joint per unit impulse; `None` if the joint
-    /// cannot move because of closed loops and held joints.
+    /// `scratch`. Returns `(M⁻¹)_jj`, the change of the rate of that joint per unit impulse; `None` if the
+    /// joint cannot move because of closed loops and held joints.
     fn impulse_response(&mut self, j: usize, sign: f64, state: &TreeState<S>) -> Option<f64> {
         let n = self.model.joint_count();
         for body in &mut self.data.bodies {

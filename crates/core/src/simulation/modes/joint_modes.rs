@@ -10,12 +10,12 @@ use serde::{Deserialize, Serialize};
 /// Distance, rad or m, from a position limit within which a joint is treated as being at the limit.
 pub(in crate::simulation) const AT_LIMIT: f64 = 1e-12;
 
-/// Rate, rad/s or m/s, below which the friction compensation for an external engine changes continuously from
-/// one direction to the other.
+/// Width, rad/s or m/s, of the interval of joint rates in which the friction compensation for an external
+/// engine changes linearly from one direction to the other.
 const TURN: f64 = 1e-2;
 
-/// Requested acceleration, rad/s² or m/s², from which the friction compensation of a joint at rest for an
-/// external engine has its full value.
+/// Requested acceleration, rad/s² or m/s², at and above which the friction compensation for an external
+/// engine has its full value on a joint at rest.
 const START: f64 = 1e-2;
 
 /// Modes of the joints during a step, which depend on the state at the start of the step and on the
@@ -207,7 +207,8 @@ impl JointModes {
         }
     }
 
-    /// Copies the modes from those of a tree; `joints` are the indices in the tree of these joints.
+    /// Copies the modes from `tree`, the modes of a tree that contains these joints; `joints` has the index
+    /// in the tree of each joint.
     pub(in crate::simulation) fn take(&mut self, tree: &Self, joints: &[usize]) {
         for (own, &joint) in joints.iter().enumerate() {
             (self.locked[own], self.direction[own]) = (tree.locked[joint], tree.direction[joint]);
@@ -237,10 +238,10 @@ impl JointModes {
         self.any_locked.then_some(&self.locked[..])
     }
 
-    /// Writes an array, `(n,)`, to `kept` that is true for the joints that a projection onto closed loops must
-    /// not move: locked joints, and joints at rest that friction, a brake or a stop can hold. The rate of a
-    /// joint that has come to rest must remain exactly zero, because a rounding error of the rate would be
-    /// treated as motion. The array is empty if there are no such joints.
+    /// Writes an array, `(n,)`, to `kept` that is true for the joints that a projection onto closed loops
+    /// must not move: locked joints, and joints at rest that friction, a brake or a stop can hold. The rate
+    /// of a joint that has come to rest must remain exactly zero, because a rounding error of the rate would
+    /// be treated as motion. The array is empty if there are no such joints.
     pub(in crate::simulation) fn find_kept_at_rest<S: Real>(&self, q: &[S], v: &[S], kept: &mut Vec<bool>) {
         let is_kept = |j: usize| self.locked[j] || self.is_at_rest(j, q, v);
         kept.clear();

@@ -12,14 +12,15 @@ use crate::spatial::Real;
 /// Number of consecutive idle steps after which changes of slip no longer end a step and impacts have no
 /// restitution, so that infinite sequences of such changes and of bounces end.
 const MOST_IDLE_STEPS: usize = 32;
-/// Length, as a fraction of a regular step, below which a step is idle if no joint came to rest or reached
-/// its stop during the step.
+/// Length, as a fraction of a regular step, below which a step counts as idle if no joint came to rest or
+/// reached its stop during the step.
 const IDLE: f64 = 1e-6;
-/// Displacement, rad or m, of a joint that came to rest or reached its stop below which the step is idle.
+/// Displacement, rad or m, of a joint in a step in which it came to rest or reached its stop. If the
+/// displacement is smaller, the step counts as idle.
 const STILL: f64 = 1e-9;
 /// Smallest length to which a step may be shortened to improve its energy balance, relative to its length
-/// before any mode change was located. If the reference were a length that ends at a jump of the elastic
-/// energy, the steps would approach the jump without passing it.
+/// before any mode change was located. If it were relative to the length after a change was located, which
+/// may end at a jump of the elastic energy, the steps would approach the jump without passing it.
 const SHORTEST: f64 = 1e-4;
 /// Bound on the rounding error of the energy balance, relative to the sum of the magnitudes of the kinetic
 /// energies and of the work.
@@ -32,7 +33,8 @@ const SHORTEST_HOLD: f64 = 1e-9;
 const CORRECTION: f64 = 4.0;
 /// Largest number of trial steps with which the forces between bodies that rest on each other are determined.
 const MOST_TRIALS: usize = 8;
-/// Largest change of a velocity, m/s, by the last correction of these forces for which the trial steps end.
+/// Largest change of a velocity, m/s, for which a correction of the forces between bodies that rest on each
+/// other is the last one.
 const HELD: f64 = 1e-12;
 /// Resolution with which the instant of a mode change is located, as a fraction of the step.
 const RESOLUTION: f64 = 1e-14;
@@ -72,8 +74,8 @@ impl<S: Real> StepMethod<S> {
 
     /// Applies the impacts between bodies with an impact law, and those of joints that move into their stops,
     /// to `state` at the time `t`, s. `t` is `None` for a copy of the state, whose touches are not recorded.
-    /// Requires the kinematics of `state`, with projected base twists, in `equations`, which afterwards contain
-    /// the kinematics after the impacts. The loads must then be computed again.
+    /// Requires the kinematics of `state`, with projected base twists, in `equations`, which afterwards
+    /// contain the kinematics after the impacts. The loads must then be computed again.
     pub(crate) fn resolve_impacts(
         &self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -93,8 +95,8 @@ impl<S: Real> StepMethod<S> {
     /// Computes the forces between bodies with an impact law that rest on each other, for a step over
     /// `interval`, s, that starts at `state`. Repeated trial steps determine the forces with which the
     /// velocities at the end of the step satisfy the law. Returns true if bodies have separated. Requires
-    /// projected base twists in `state`, and its kinematics, loads and joint modes in `equations`; computes all
-    /// of these again.
+    /// projected base twists in `state`, and its kinematics, loads and joint modes in `equations`; computes
+    /// all of these again.
     pub(crate) fn hold_contacts(
         &mut self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -212,7 +214,7 @@ impl<S: Real> StepMethod<S> {
         }
     }
 
-    /// Returns, for each tree, the step from its start to `end`.
+    /// Returns each tree with its modes, its state at the start of the step and its state in `end`.
     fn modes_of<'a, 's, W>(
         &'a self,
         equations: &'a EquationsOfMotion<'s, S, W>,
