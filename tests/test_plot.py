@@ -69,6 +69,14 @@ def test_a_run_shows_its_certificate_in_small(reach: oo.Run) -> None:
     assert "linear momentum drift" in reach._repr_html_() and "passed" in reach._repr_html_()
 
 
+def test_a_run_shows_the_times_of_its_events() -> None:
+    changes = {"simulation.duration": "91 s", "simulation.record_every": 1000}
+    run = oo.run("release_and_retreat", quiet=True, changes=changes)
+    event, shown = run.summary["events"][-1], run._repr_html_()
+    assert event["name"] == "let_go" and event["time_s"] == 90.0
+    assert ">90<" in shown[shown.index(">let_go<") :].split("</tr>")[0]
+
+
 def test_a_trace_shows_itself_and_a_failure_falls_back(
     reach: oo.Run, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

@@ -50,7 +50,7 @@ def run_html(run: Run) -> str:
     rows = [row(key, summary[key]) for key in _NUMBERS if key in summary]
     lines += [(one.name, one.shown, one.unit, "") for one in rows]
     events = summary.get("events") or []
-    lines += [(str(event.get("name", "")), _number(event.get("time")), "s", str(event.get("kind", "event")))
+    lines += [(str(event.get("name", "")), _number(event.get("time_s")), "s", str(event.get("kind", "event")))
               for event in events[:_MOST_EVENTS]]  # fmt: skip
     if len(events) > _MOST_EVENTS:
         lines.append((f"{len(events) - _MOST_EVENTS} more events", "", "", ""))

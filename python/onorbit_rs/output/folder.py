@@ -23,6 +23,7 @@ from onorbit_rs.output.errors import edited, foreign, not_empty, not_writable
 from onorbit_rs.output.lock import LOCK, FolderLock, owner_of
 from onorbit_rs.output.manifest import (
     CHECKPOINT,
+    COMMANDS,
     FIGURES,
     MANIFEST,
     RESULTS,
@@ -239,7 +240,7 @@ class OutputFolder:
     def discard(self) -> None:
         """Remove the files that were written for a run that failed to start."""
         self._check_lock()
-        for name in (SCENARIO, MANIFEST):
+        for name in (SCENARIO, COMMANDS, MANIFEST):
             remove(self.path / name)
 
     def discard_checkpoint(self) -> None:
