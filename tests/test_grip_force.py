@@ -135,7 +135,7 @@ def test_a_law_is_pickled() -> None:
         ({"force": -1.0}, "force is -1; it must not be negative"),
         ({"force": np.inf}, "force holds inf"),
         ({"damping": 0.0}, "damping is 0; it must be positive"),
-        ({"closing_rate": 0.0}, "closing_rate is 0; its sign is the direction of the motion"),
+        ({"closing_rate": 0.0}, "closing_rate is 0; its sign determines the direction of the motion"),
         ({"closing_rate": np.nan}, "closing_rate holds NaN"),
         ({"ramp": -1.0}, "ramp is -1"),
         ({"integral": np.nan}, "integral holds NaN"),

@@ -58,7 +58,9 @@ ArgumentsOption = Annotated[
     typer.Option("--arg", metavar="NAME=VALUE", help="Argument of a xacro file; may be repeated."),
 ]
 
-PictureOption = Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the robot: PNG, PDF or SVG.")]
+PictureOption = Annotated[
+    Path | None, typer.Option(metavar="FILE", help="Draw the robot to a PNG, PDF or SVG file.")
+]
 XacroOption = Annotated[
     bool, typer.Option("--xacro", help="Expand the file with xacro even if its name does not end in .xacro.")
 ]

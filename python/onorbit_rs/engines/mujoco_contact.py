@@ -141,8 +141,8 @@ def _pieces(
     if not found:
         raise EngineError(
             f"contact '{contact}': no link with a collision shape matches {', '.join(links)} in the systems "
-            f"of this engine ({', '.join(filter(None, bodies)) or 'one robot'}); correct the links, add a "
-            "collision shape to the link, or add the missing system to the models of Mujoco",
+            f"of this engine ({', '.join(filter(None, bodies)) or 'one robot'}); correct the names of the "
+            "links, add a collision shape to one of them, or add the missing system to 'model' of Mujoco",
             name="contacts", got=contact,
         )  # fmt: skip
     return found

@@ -106,7 +106,7 @@ class CheckpointWriter:
             if not self._has_warned:
                 self._has_warned = True
                 warnings.warn(
-                    f"{error}; the run continues without this checkpoint and tries again at the next one",
+                    f"{error}; the run continues and will try later to write its rows and checkpoints",
                     UserWarning, stacklevel=3,
                 )  # fmt: skip
             return False

@@ -122,8 +122,8 @@ def _material(shape: Visual) -> str:
 def _add_joint(robot: xml.Element, named: Mapping[str, str], joint: Joint) -> None:
     if any(joint.anchor):
         raise ModelError(
-            f"the axis of joint {joint.name!r} does not pass through the origin of link {joint.child!r}, "
-            "which URDF requires; export the robot before Model.rerooted or attach",
+            f"URDF requires the axis of joint {joint.name!r} to pass through the origin of link "
+            f"{joint.child!r}, but it does not; export the robot before calling Model.rerooted or attach",
             name=joint.name,
         )
     bounded = joint.lower is not None or joint.upper is not None

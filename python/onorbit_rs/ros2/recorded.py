@@ -119,7 +119,7 @@ def _read(folder: Path) -> Run:
 
 
 def _by_name(trace: Trace | WorldTrace, models: Models | None) -> Mapping[str, Model]:
-    """Return the models of a trace by the name of the system; raise an InputError if one is missing."""
+    """Return the models by system; raise an InputError unless there is one for each system of the trace."""
     systems = list(getattr(trace, "names", ["robot"]))
     if isinstance(models, Model) and len(systems) == 1:
         return {systems[0]: models}

@@ -17,7 +17,7 @@ _PERIOD_S = 1.0
 
 
 class Rivals:
-    """Other nodes in the domain that publish ``/clock``, as simulators do."""
+    """Warns if another node in the domain publishes ``/clock``, as other simulators do."""
 
     def __init__(self, participant: Participant, domain: int) -> None:
         """Store the participant of the node and the number of its domain."""

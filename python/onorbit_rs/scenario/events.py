@@ -227,8 +227,8 @@ def _check_frames(paths: list[str], systems: list[str], refuse: Callable[..., Ex
             raise refuse("do", "capture", index, message=message)
     if split_path(paths[0])[0] == split_path(paths[1])[0]:
         message = (
-            "a system cannot capture itself; give frames of two systems, or close a loop within the system "
-            f"from the start with loops: [{{name: NAME, kind: weld, between: [{', '.join(paths)}]}}]"
+            "a system cannot capture itself; give frames of two systems, or connect the frames from the "
+            f"start of the run with loops: [{{name: NAME, kind: weld, between: [{', '.join(paths)}]}}]"
         )
         raise refuse("do", "capture", message=message)
 

@@ -53,7 +53,10 @@ class StreamedRows:
         return {name: saved[prefix] for prefix, name in self._prefixes.items()} or saved[""]
 
     def move(self) -> None:
-        """Write the new rows, and remove rows from memory; on a full disk, they remain in memory."""
+        """Write the new rows, then remove all but the first and the last rows of each system from memory.
+
+        If the new rows cannot be written, no rows are removed.
+        """
         if not self._writer.append(self._stepper.columns(since=self._since())):
             return
         in_memory = self._saved()

@@ -28,14 +28,14 @@ def check_notebook() -> None:
 
 
 def display_recording(content: bytes, width: int | None, height: int) -> None:
-    """Display the content of a ``.rrd`` file below the cell; see :func:`check_notebook`.
+    """Display the content of a ``.rrd`` file below the cell; call :func:`check_notebook` first.
 
     Parameters
     ----------
     content : bytes
         Content of the file; it is sent when the viewer in the browser is ready.
     width, height : int or None
-        Size, pixels; the width None is that of the notebook.
+        Size, pixels; if ``width`` is None, the viewer is as wide as the notebook.
     """
     import rerun_notebook
     from IPython.display import display

@@ -25,7 +25,9 @@ pub enum ControlError {
     Negative { name: &'static str, value: f64 },
     #[error("{name} is 0; it must be positive")]
     NotPositive { name: &'static str },
-    #[error("{name} is 0; its sign is the direction of the motion, so give a positive or a negative number")]
+    #[error(
+        "{name} is 0; its sign determines the direction of the motion, so give a positive or a negative number"
+    )]
     Zero { name: &'static str },
     #[error(
         "control '{control}' grips with {force} N, which requires an effort of {effort} N from joint '{joint}', whose \

@@ -72,8 +72,8 @@ impl Connections {
         self.active.roots.push(root);
     }
 
-    /// Returns the index of the root of the tree that contains a system; `None` if the system has never been
-    /// connected.
+    /// Returns the index of the root of the tree that contains a system; `None` if this tree has no root,
+    /// because the system has never been connected or a removed weld has separated it from its root.
     fn root_of(&self, system: usize) -> Option<usize> {
         let tree = self.connected_to(system);
         self.active.roots.iter().copied().find(|root| tree.contains(root))

@@ -21,7 +21,7 @@ pub enum WorldError {
     EventTwice { name: String },
     #[error(
         "both frames of the event '{event}' belong to the system '{system}', but a capture connects two systems; give \
-         frames of two different systems, or close a loop within the system from the start with a loop of kind 'weld'"
+         frames of two different systems, or connect the frames from the start of the run by a loop of kind 'weld'"
     )]
     OwnSystem { event: String, system: String },
     #[error(

@@ -102,7 +102,7 @@ class Case:
     needs: str = ""
 
     def judge(self) -> Verdict:
-        """Return the verdict of the case: failed if it raises an error, skipped if it cannot run."""
+        """Run the case and return its verdict: an error means failed; a case that cannot run is skipped."""
         if self.needs and importlib.util.find_spec(self.needs) is None:
             return self._without_errors(None, f"{self.needs} is not installed: {INSTALL[self.needs]}")
         try:

@@ -85,8 +85,8 @@ impl Kepler {
     ///
     /// # Errors
     /// [`OrbitError::NotFinite`], [`OrbitError::TooLarge`] and [`OrbitError::NotPositive`] for invalid
-    /// numbers and for sizes beyond the range of `f64`; [`OrbitError::OutOfRange`] for anomalies on an
-    /// ellipse beyond 1e15 rad and eccentricities beyond 1e20;
+    /// numbers and for sizes beyond the range of `f64`; [`OrbitError::OutOfRange`] for an anomaly
+    /// beyond 1e15 rad on an ellipse, or an eccentricity beyond 1e20;
     /// [`OrbitError::NegativeEccentricity`], [`OrbitError::AxisSign`], [`OrbitError::ParabolaHasNoAxis`],
     /// [`OrbitError::ParabolaHasNoMeanAnomaly`], [`OrbitError::Inclination`] and
     /// [`OrbitError::BeyondAsymptote`] for invalid or inconsistent elements.

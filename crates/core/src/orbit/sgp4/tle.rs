@@ -56,7 +56,7 @@ impl<'a> Line<'a> {
         ElementSetError::Column { line: self.number, column: first, got, expected }
     }
 
-    /// Verifies the checksum, which is the sum of the digits, with 1 for each minus sign, modulo ten.
+    /// Verifies the checksum: the sum of the digits modulo 10, where each minus sign counts as 1.
     fn add_up(&self) -> Result<(), ElementSetError> {
         let worth = |c: u8| {
             if c == b'-' { 1 } else { u32::from(c.is_ascii_digit()) * u32::from(c.wrapping_sub(b'0')) }
