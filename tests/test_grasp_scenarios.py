@@ -151,7 +151,7 @@ BAD: list[tuple[str, str, str, str, str]] = [
     ("grasp_and_capture", "closing_rate: -2 cm/s", "closing_rate: 2 cm/s", GRIP,
      "do not approach any other link of 'servicer'"),
     ("grasp_and_capture", "between: [servicer/right_finger", "between: [servicer/left_finger", GRIP,
-     "do not approach any other link"),
+     "the link left_finger does not approach any other link"),
     ("grasp_and_capture", "force: 25 N", "force: 80 N", GRIP,
      "requires an effort of 160 N from joint 'left_jaw', whose effort limit is 150 N"),
     ("grasp_and_capture", "target/handle]\n    normal", "target/bus]\n    normal", GRIP,
@@ -179,6 +179,37 @@ def test_bad_input_is_an_error_with_file_line_and_path(
         build_world(scenario)  # type: ignore[arg-type]  # a scenario with systems
     text = str(error.value)
     assert "changed.yaml:" in text and where in text and message in text, text
+
+
+THICK = [
+    ("{kind: torus, major_radius: 30 cm, minor_radius: 7 cm}", "0.14"),
+    ("{kind: cone, radius: 8 cm, height: 40 cm}", "0.1569"),  # 2 r h/√(r² + h²), across its side
+    ("{kind: cone, radius: 40 cm, height: 13 cm}", "0.13"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("shape", "width"), THICK, ids=[shape for shape, _ in THICK])
+def test_rings_and_cones_that_are_wider_than_the_opening(shape: str, width: str, tmp_path: Path) -> None:
+    path = tmp_path / "thick.yaml"
+    path.write_text(
+        "systems:\n"
+        "  hand:\n"
+        "    robot: jaw_hand\n"
+        "    controllers: [{name: grip, kind: grip_force, joints: left_jaw, force: 20 N, damping: 80, "
+        "closing_rate: -0.02}]\n"
+        "  thing:\n"
+        "    robot: {rigid_body: {mass: 20, inertia: [1, 1, 1]}}\n"
+        "    initial: {position: [0, 0, 2 m]}\n"
+        f"    collision: [{{link: base, shape: {shape}}}]\n"
+        "contacts: [{between: [hand/*_finger, thing/base], normal: {kind: hunt_crossley, stiffness: 2e4}}]\n"
+        "simulation: {duration: 1 s}\n",
+        encoding="utf-8",
+    )
+    with pytest.raises(OnOrbitError, match=f"thick.yaml:4: .*thing/base is {width} m wide"):
+        build_world(load(path))  # type: ignore[arg-type]  # a scenario with systems
+    narrow = path.read_text(encoding="utf-8").replace(shape, "{kind: sphere, radius: 5 cm}")
+    path.write_text(narrow, encoding="utf-8")
+    build_world(load(path))  # type: ignore[arg-type]
 
 
 def test_a_latch_without_contacts_closes_before_the_grasp() -> None:

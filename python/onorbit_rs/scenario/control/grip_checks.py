@@ -70,8 +70,9 @@ def check_grip(
         pair for pair in pairs if _gap(model, closed, pair) < _gap(model, q, pair) - _CLOSER * _MOTION
     ]
     if not approaching:
+        who = f"link {fingers[0]} does" if len(fingers) == 1 else f"links {', '.join(fingers)} do"
         raise ControlError(
-            f"the links {', '.join(fingers)} do not approach any other link of {name!r} that may touch the "
+            f"the {who} not approach any other link of {name!r} that may touch the "
             "object, so nothing opposes their force; check the signs of closing_rate, or declare a contact "
             "of the opposite finger",
             name=control.name,
@@ -162,9 +163,18 @@ def _widths(model: _core.Model, link: str) -> list[float]:
 
 
 def _width(kind: str, size: Sequence[float]) -> float:
-    """Return the smallest width of a shape, m; zero for kinds whose width is not known."""
+    """Return the smallest width of a shape, m; zero for kinds whose width is not known.
+
+    For a cone with the radius `r` and the height `h`, it is `min(h, 2 r h / √(r² + h²))`, the smallest
+    height of its triangular section; for a torus, it is the diameter of the tube.
+    """
     if kind == "box":
         return min(size)
     if kind in ("sphere", "capsule"):
         return 2.0 * size[0]
+    if kind == "torus":
+        return 2.0 * size[1]
+    if kind == "cone":
+        radius, height = size
+        return min(height, 2.0 * radius * height / float(np.hypot(radius, height)))
     return min(2.0 * size[0], size[1]) if kind == "cylinder" else 0.0
