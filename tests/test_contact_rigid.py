@@ -181,6 +181,11 @@ def test_invalid_laws_are_errors_that_state_the_remedy(make: Any, words: list[st
         assert word in str(caught.value)
 
 
+def test_an_overlap_that_an_impact_law_excludes_is_not_offered() -> None:
+    with pytest.raises(WorldError, match="move them apart$"):
+        run(pair(gap=-0.01, normal=LAW))
+
+
 def test_laws_and_contacts_pickle() -> None:
     law = pickle.loads(pickle.dumps(LAW))
     assert (law.restitution, law.friction, repr(law)) == (0.5, 0.3, repr(LAW))

@@ -57,9 +57,8 @@ pub enum ContactError {
     },
     /// The bodies overlap at the start of a run.
     #[error(
-        "contact '{contact}': at the start, the links {links} overlap by {depth} m; move them apart, or permit \
-         the overlap with start_overlapping",
-        depth = short(*depth)
+        "contact '{contact}': at the start, the links {links} overlap by {depth} m; move them apart{remedy}",
+        depth = short(*depth), remedy = or_permit(*may_be_permitted)
     )]
     Overlap {
         /// Name of the contact.
@@ -68,6 +67,8 @@ pub enum ContactError {
         links: String,
         /// Depth of the overlap, m.
         depth: f64,
+        /// False for a contact with an impact law, whose bodies cannot overlap.
+        may_be_permitted: bool,
     },
     /// A contact has an impact law and a setting that cannot be combined with it.
     #[error("contact '{contact}': an impact law excludes {what}")]
@@ -121,6 +122,11 @@ pub enum ContactError {
         /// Error of the shape or of the computation of the distance.
         source: GeometryError,
     },
+}
+
+/// Returns the second remedy for an overlap at the start; empty if the overlap cannot be permitted.
+fn or_permit(may_be_permitted: bool) -> &'static str {
+    if may_be_permitted { ", or permit the overlap with start_overlapping" } else { "" }
 }
 
 fn with_space(unit: &str) -> String {

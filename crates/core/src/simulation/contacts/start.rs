@@ -44,7 +44,13 @@ impl Contacts {
                     format!("'{}/{link}'", names[side.declared.system])
                 };
                 let links = format!("{} and {}", path(&touching.sides[0]), path(&touching.sides[1]));
-                return Err(ContactError::Overlap { contact: touching.name.clone(), links, depth });
+                let may_be_permitted = touching.rigid.is_none();
+                return Err(ContactError::Overlap {
+                    contact: touching.name.clone(),
+                    links,
+                    depth,
+                    may_be_permitted,
+                });
             }
             state.contacts[number].normal_work = pressure.map_or(0.0, |pressure| pressure.elastic);
         }
