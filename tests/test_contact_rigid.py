@@ -182,7 +182,7 @@ def test_invalid_laws_are_errors_that_state_the_remedy(make: Any, words: list[st
 
 
 def test_an_overlap_that_an_impact_law_excludes_is_not_offered() -> None:
-    with pytest.raises(WorldError, match="move them apart$"):
+    with pytest.raises(WorldError, match=r"move them apart$"):
         run(pair(gap=-0.01, normal=LAW))
 
 

@@ -121,7 +121,7 @@ def _norms(rows: Floats) -> Floats:
 
 
 def _controls(trace: Trace, built: Built) -> Summary:
-    """Return tracking errors and outcomes of the goals of ``controllers``; empty if there are none.
+    """Return tracking errors and outcomes of the goals of ``controllers``; empty without goals.
 
     The errors are the largest ones; for a control of a grip force, the error is that at the end.
     """

@@ -213,7 +213,7 @@ def controlled(
     runs_code: bool,
     neighbours: Mapping[str, Neighbour] | None = None,
 ) -> tuple[Any, Any]:
-    """Return new controllers, or None without controllers, and the reference of a single controller, or None.
+    """Return new controllers, or None, and the reference of a single controller, or None.
 
     ``neighbours`` are the other systems of the world. Without them, controls that require other systems are
     omitted.
