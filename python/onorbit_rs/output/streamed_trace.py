@@ -24,8 +24,28 @@ DRAWN_ROWS = 20_000
 _ROWS_AT_ONCE = 1000
 
 
+class _Ending:
+    """What the trace of the engine, ``ending``, knows of all rows, although it contains only some of them."""
+
+    ending: Any
+
+    @property
+    def is_complete(self) -> bool:
+        """True if the run reached its end."""
+        return bool(self.ending.is_complete)
+
+    @property
+    def wall_s(self) -> float:
+        """Wall-clock time of the simulation loop, s."""
+        return float(self.ending.wall_s)
+
+    def certificate(self) -> Any:
+        """Return the certificate of all rows."""
+        return self.ending.certificate()
+
+
 @dataclass(frozen=True, repr=False)
-class StreamedTrace(SavedTrace):
+class StreamedTrace(_Ending, SavedTrace):
     """Trace whose columns are read from files when used; has the attributes of :class:`onorbit_rs.Trace`.
 
     ``ending`` is the trace of the engine, which contains the first and the last rows and the certificate of
@@ -33,16 +53,6 @@ class StreamedTrace(SavedTrace):
     """
 
     ending: Trace
-
-    @property
-    def is_complete(self) -> bool:
-        """True if the run reached its end."""
-        return self.ending.is_complete
-
-    @property
-    def wall_s(self) -> float:
-        """Wall-clock time of the simulation loop, s."""
-        return self.ending.wall_s
 
     @property
     def results(self) -> Any:
@@ -58,10 +68,6 @@ class StreamedTrace(SavedTrace):
     def rereferenced(self) -> Any:
         """Times at which the run changed to a new reference orbit, s."""
         return self.ending.rereferenced
-
-    def certificate(self) -> Any:
-        """Return the certificate of all rows."""
-        return self.ending.certificate()
 
     def joint_limits_exceeded(self) -> Any:
         """Return the names of the joints beyond their position limits in any row."""
@@ -98,24 +104,10 @@ class StreamedTrace(SavedTrace):
 
 
 @dataclass(frozen=True, repr=False)
-class StreamedWorldTrace(SavedWorldTrace):
+class StreamedWorldTrace(_Ending, SavedWorldTrace):
     """Trace of a world whose systems are :class:`StreamedTrace`; ``ending`` is the trace of the engine."""
 
     ending: WorldTrace
-
-    @property
-    def is_complete(self) -> bool:
-        """True if the run reached its end."""
-        return self.ending.is_complete
-
-    @property
-    def wall_s(self) -> float:
-        """Wall-clock time of the simulation loop, s."""
-        return self.ending.wall_s
-
-    def certificate(self) -> Any:
-        """Return the certificate of the world, of all rows."""
-        return self.ending.certificate()
 
     def __repr__(self) -> str:
         """Return the names of the systems, the number of rows and the last time."""
