@@ -45,9 +45,15 @@ def listening() -> set[str]:
 
 @pytest.fixture(scope="module")
 def cluster() -> Iterator[str]:
-    with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, host="127.0.0.1", dashboard_address="127.0.0.1:0", memory_limit=0
-    ) as found:
+    from dask import config
+
+    with (
+        config.set(on_dask._SETTINGS),
+        distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, host="127.0.0.1", dashboard_address="127.0.0.1:0",
+            memory_limit=0,
+        ) as found,
+    ):  # fmt: skip
         yield found.scheduler_address
 
 
@@ -151,6 +157,34 @@ if __name__ == "__main__":
     process.wait()
 
 
+def test_a_cluster_without_workers_is_an_error_that_keeps_the_cases(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The campaign once waited forever for the tasks of a cluster whose workers had all ended."""
+    monkeypatch.setattr("onorbit_rs.campaigns.on_dask._BATCH_S", 0.05)
+    campaign = spin(200)
+    out = tmp_path / "out"
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, host="127.0.0.1", dashboard_address=None, memory_limit=0
+    ) as cluster:
+        original = on_dask._Tasks._results
+
+        def end_workers(self: Any, future: Any, cases: list[int]) -> Any:
+            found = original(self, future, cases)
+            if any(case > 20 for case in cases):
+                monkeypatch.setattr("onorbit_rs.campaigns.on_dask._WITHOUT_WORKERS_S", 1.5)
+                cluster.scale(0)
+            return found
+
+        with monkeypatch.context() as patched:
+            patched.setattr(on_dask._Tasks, "_results", end_workers)
+            words = r"has lost all of its workers, .* for 1\.5 s; .*\d+ of 200 cases are kept"
+            with pytest.raises(CampaignError, match=words) as caught:
+                oo.campaign(campaign, out, cluster=cluster.scheduler_address)
+    assert caught.value.reason == "no workers"
+    assert same(oo.campaign(campaign, out)).equals(same(oo.campaign(campaign)))
+
+
 def test_a_worker_with_another_version_is_refused(cluster: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("onorbit_rs.campaigns.plan.software", lambda: "onorbit_rs 0.0.1, avx2")
     with pytest.raises(
@@ -178,7 +212,8 @@ def test_a_transfer_that_is_cut_off_is_tried_again(status: str, monkeypatch: pyt
         return "outcome"
 
     tasks = object.__new__(on_dask._Tasks)
-    tasks._client, tasks._address, tasks._lost_since = SimpleNamespace(status=status), "tcp://x", None
+    tasks._client = SimpleNamespace(status=status, nthreads=lambda: {"tcp://y": 1})
+    tasks._address, tasks._lost_since = "tcp://x", None
     future = SimpleNamespace(result=result)
     if status == "running":
         assert tasks._result(future) == "outcome" and len(calls) == 3

@@ -27,11 +27,14 @@ _SETTINGS = {
     "distributed.worker.profile.enabled": False,  # samples the stacks of Python a hundred times a second
     # replaces the default MALLOC_TRIM_THRESHOLD_, with which every case releases and maps memory again
     "distributed.nanny.pre-spawn-environ": {"OMP_NUM_THREADS": 1, "MALLOC_ARENA_MAX": 1},
+    # the default, 15 s after the death of a worker, ends the process that restarts it, if the worker that
+    # replaced it has just died too
+    "distributed.deploy.lost-worker-timeout": "365 days",
 }
 """Settings of Dask for a cluster on this machine."""
 _CONNECT_S = 10.0
 _WITHOUT_WORKERS_S = 60.0
-"""Wall-clock time for which a campaign waits for the first worker, s."""
+"""Wall-clock time for which a campaign waits for the first worker, or for another one if all are lost, s."""
 _LOST_S = 15.0
 """Wall-clock time without a connection after which it counts as lost, s."""
 _RESULT_S = 1.0
@@ -165,6 +168,7 @@ class _Tasks:
         self._threads = self._wait_for_workers()
         self._board = Board(cases, self._threads, batch_s=_BATCH_S)
         self._lost_since: float | None = None
+        self._idle_since: float | None = None
 
     def outcomes(self, count: int) -> Iterator[Outcome]:
         """Yield the outcomes of ``count`` cases."""
@@ -189,7 +193,7 @@ class _Tasks:
             future.add_done_callback(self._done.put)
 
     def _next(self) -> Any:
-        """Return the next task that has ended; raise CampaignError if the connection is lost."""
+        """Return the next task that has ended; raise CampaignError if the cluster or all workers are lost."""
         while True:
             try:
                 return self._done.get(timeout=1.0)
@@ -204,6 +208,18 @@ class _Tasks:
             self._lost_since = self._lost_since or now
         if self._client.status == "closed" or (self._lost_since and now - self._lost_since > _LOST_S):
             raise self._gone()
+        if self._client.status == "running":
+            self._check_workers(now)
+
+    def _check_workers(self, now: float) -> None:
+        """Raise CampaignError if the cluster has had no workers for a long time."""
+        with suppress(OSError, TimeoutError):  # the connection may break at any time
+            if self._client.nthreads():
+                self._idle_since = None
+                return
+        self._idle_since = self._idle_since or now
+        if now - self._idle_since > _WITHOUT_WORKERS_S:
+            raise self._no_workers("has lost all of its workers, and no other has joined for")
 
     def _results(self, future: Any, cases: list[int]) -> list[Outcome]:
         """Return the outcomes of a task, or an empty list if its worker died and its cases are run again."""
@@ -253,8 +269,11 @@ class _Tasks:
             if threads := sum(self._client.nthreads().values()):
                 return int(threads)
             time.sleep(0.2)
-        raise CampaignError(
-            f"the cluster at {self._address} has no workers after {_WITHOUT_WORKERS_S:g} s; start one with "
+        raise self._no_workers("has no workers after")
+
+    def _no_workers(self, what: str) -> CampaignError:
+        return CampaignError(
+            f"the cluster at {self._address} {what} {_WITHOUT_WORKERS_S:g} s; start one with "
             f"'dask worker {self._address}'",
             reason="no workers",
         )
