@@ -55,14 +55,51 @@ def test_a_world_shows_its_contacts_with_their_laws() -> None:
 
 
 def test_a_simulation_shows_its_systems_and_settings() -> None:
-    shown = text(oo.Simulation(world(), time_step=0.1, record_every=5)._repr_html_())
+    both = world(environment=[oo.GravityGradient()])
+    simulation = oo.Simulation(both, time_step=0.1, record_every=5)
+    shown = text(simulation._repr_html_())
     for part in (
-        "|chaser|humanoid_torso|103.8 kg|7|",
+        "|chaser|humanoid_torso|103.8 kg|7|stay: JointComputedTorque|",
+        "|effects|GravityGradient|",
+        "|contacts|none|",
+        "|engine|native|",
         "|integrator|rk4|",
         "|time step|0.1 s|",
         "every 0.5 s",
     ):
         assert part in shown, part
+    assert [type(effect) for effect in simulation.environment] == [oo.GravityGradient]
+    assert list(simulation.controllers) == ["chaser", "target"] and simulation.controllers["target"] == []
+
+
+def test_a_simulation_returns_what_acts_on_it() -> None:
+    torso = oo.robots.load("humanoid_torso")
+    state = (torso.neutral(), np.zeros(torso.nv))
+    drag, law = oo.Drag(oo.ConstantAtmosphere(1e-12)), oo.JointComputedTorque(kp=1, kd=1)
+    hold, orbit = oo.JointHold(np.zeros(7)), oo.Kepler(semi_major_axis=7e6)
+    alone = oo.Simulation(torso, *state, orbit=orbit, environment=[drag], controller=law, reference=hold)
+    assert alone.environment == [drag] and alone.contacts == [] and alone.engine is None
+    assert list(alone.controllers.values()) == [[law]]
+    assert "|JointComputedTorque|" in text(alone._repr_html_()) and "|effects|Drag|" in text(
+        alone._repr_html_()
+    )
+    contact = oo.Contact("chaser/*", "target/*", normal=oo.HuntCrossley(1e4, restitution=0.5, speed=0.1))
+    assert "|contacts|none|" in text(alone._repr_html_())
+    spheres = oo.scenario.build_world.build_world(oo.scenario.load("two_spheres")).simulation
+    (found,) = spheres.contacts
+    assert type(found) is type(contact) and "HuntCrossley" in text(spheres._repr_html_())
+    spheres.contacts.clear()
+    assert len(spheres.contacts) == 1, "the lists are copies"
+
+
+def test_a_simulation_names_its_engine() -> None:
+    pytest.importorskip("mujoco", reason="MuJoCo is in an extra")
+    torso = oo.robots.load("humanoid_torso")
+    engine = oo.engines.Mujoco(torso)
+    simulation = oo.Simulation(torso, torso.neutral(), np.zeros(torso.nv), engine=engine)
+    assert simulation.engine is engine
+    shown = text(simulation._repr_html_())
+    assert "|engine|Mujoco|" in shown and "|integrator|that of the engine|" in shown
 
 
 def test_a_campaign_shows_success_results_and_failures(tmp_path: Path) -> None:

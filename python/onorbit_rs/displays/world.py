@@ -38,13 +38,19 @@ def world_html(world: World) -> str:
 
 
 def simulation_html(simulation: Simulation) -> str:
-    """Return the systems, the orbit, the integrator and the time steps of a simulation as HTML."""
+    """Return the systems of a simulation, what acts on them, its engine and its time steps as HTML."""
     models: Mapping[str, Model] = simulation.models
-    table = rows_html([_robot(name, model) for name, model in list(models.items())[:_MOST]], _ROBOT)
-    step, every = simulation.time_step, simulation.record_every
+    controllers = simulation.controllers
+    rows = [(*_robot(name, model), _listed(_controls(controllers[name])))
+            for name, model in list(models.items())[:_MOST]]  # fmt: skip
+    table = rows_html(rows, (*_ROBOT, "controls"))
+    step, every, engine = simulation.time_step, simulation.record_every, simulation.engine
     lines = [
         ("orbit", _orbit(simulation.orbit)),
-        ("integrator", simulation.integrator),
+        ("effects", _listed(type(effect).__name__ for effect in simulation.environment)),
+        ("contacts", _listed(_contact(contact) for contact in simulation.contacts)),
+        ("engine", "native" if engine is None else type(engine).__name__),
+        ("integrator", simulation.integrator if engine is None else "that of the engine"),
         ("time step", f"{digits(step)} s"),
         ("recorded", f"one row every {digits(step * every)} s"),
     ]

@@ -3,7 +3,7 @@
 use super::Any;
 use crate::arrays::type_name;
 use crate::earth::PyEarth;
-use crate::environment::{PyEffect, SurfaceAssignment, Target, effects};
+use crate::environment::{PyEffect, SurfaceAssignment, Target};
 use crate::errors::{IntoPython, fields, raise};
 use crate::gravity::gravity_of;
 use crate::model::PyModel;
@@ -31,7 +31,7 @@ pub(super) fn of_world(world: &Bound<'_, PyWorld>, given: &[(&str, bool)]) -> Py
 
 /// Orbit, Earth, gravity mode and effects of a simulation, as given in Python.
 type Surroundings<'a, 'py> =
-    (Option<&'a Bound<'py, PyOrbit>>, Option<&'a Bound<'py, PyEarth>>, &'a str, Option<Any<'a, 'py>>);
+    (Option<&'a Bound<'py, PyOrbit>>, Option<&'a Bound<'py, PyEarth>>, &'a str, &'a [Bound<'py, PyEffect>]);
 
 /// Creates the simulation of a robot with the default integrator settings.
 pub(super) fn of_robot(
@@ -56,7 +56,7 @@ pub(super) fn of_robot(
     simulation.orbit = orbit.map(|orbit| Arc::clone(&orbit.get().orbit));
     simulation.earth = earth.map(|earth| earth.get().in_axes_of(simulation.orbit.as_deref()));
     simulation.gravity_mode = gravity_mode_named(py, gravity_mode)?;
-    set_environment(py, &mut simulation, &effects(environment)?, &[None])?;
+    set_environment(py, &mut simulation, environment, &[None])?;
     let orbit = simulation.orbit.clone();
     let around = Around { orbit: orbit.as_ref(), ..Around::default() };
     settings.apply(py, model, &around, &mut simulation.systems[0])?;

@@ -1,13 +1,16 @@
 //! The class `Simulation`: the simulation of one robot or of a world.
 
 mod build;
+mod given;
 
 pub(crate) use build::{gravity_mode_named, integrator_named, set_environment};
 
 use crate::arrays::record_every;
 use crate::checkpoint::{CheckpointCallback, PyCheckpoint};
+use crate::contact::PyContact;
 use crate::earth::PyEarth;
 use crate::engine::PythonEngine;
+use crate::environment::{PyEffect, effects};
 use crate::errors::SimulationErrorExt;
 use crate::interrupt::{period, prepare};
 use crate::model::PyModel;
@@ -16,6 +19,7 @@ use crate::shared_run::SharedRun;
 use crate::stepper::PyStepper;
 use crate::world::{PyWorld, RobotSettings, Systems};
 use build::{of_robot, of_world};
+use given::{Given, copies};
 use onorbit_core::simulation::SimulationError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -145,6 +149,7 @@ pub(crate) struct PySimulation {
     /// Name of the integrator.
     #[pyo3(get)]
     integrator: String,
+    given: Given,
 }
 
 #[pymethods]
@@ -198,11 +203,15 @@ impl PySimulation {
             ("rereference_beyond", rereference_beyond != 1e5),
             ("actuators", actuators.is_some()),
         ];
+        let mut objects;
         let mut own_orbit = orbit.map(|orbit| orbit.clone().unbind());
         let mut simulation = if let Ok(world) = model.cast::<PyWorld>() {
             own_orbit = world.get().orbit(py);
+            objects = Given::of_world(py, world.get());
             of_world(world, &given)?
         } else {
+            let environment = effects(environment)?;
+            objects = Given::of_robot(py, &environment, controller.as_ref());
             let settings = RobotSettings {
                 controller,
                 reference,
@@ -214,7 +223,7 @@ impl PySimulation {
                 actuators,
             };
             let mut simulation =
-                of_robot(model, (q, v), (orbit, earth, gravity_mode, environment), &settings)?;
+                of_robot(model, (q, v), (orbit, earth, gravity_mode, &environment), &settings)?;
             simulation.rereference_beyond = rereference_beyond;
             simulation
         };
@@ -225,12 +234,13 @@ impl PySimulation {
         simulation.record_wrenches = record_wrenches;
         simulation.check().map_err(|error| error.into_python_with(py, None))?;
         if let Some(engine) = engine {
+            objects.engine = Some(engine.clone().unbind());
             simulation.engine = Some(Box::new(PythonEngine::new(engine, &simulation)?));
             simulation.check().map_err(|error| error.into_python_with(py, None))?;
         }
         let systems = Arc::new(Systems::of(&simulation));
         let (run, integrator) = (SharedRun::new(simulation), integrator.to_owned());
-        Ok(Self { run, systems, orbit: own_orbit, time_step, record_every, integrator })
+        Ok(Self { run, systems, orbit: own_orbit, time_step, record_every, integrator, given: objects })
     }
 
     /// Models of the robots, by the name of the system. A single robot has the name of its model.
@@ -241,6 +251,34 @@ impl PySimulation {
             all.set_item(name, PyModel::of(Arc::clone(model)))?;
         }
         Ok(all)
+    }
+
+    /// Effects on the bodies, as given.
+    #[getter]
+    fn environment(&self, py: Python<'_>) -> Vec<Py<PyEffect>> {
+        copies(py, &self.given.environment)
+    }
+
+    /// Contacts between links, as given; empty for a single robot.
+    #[getter]
+    fn contacts(&self, py: Python<'_>) -> Vec<Py<PyContact>> {
+        copies(py, &self.given.contacts)
+    }
+
+    /// Controllers as given, laws or :class:`Control`: a list for each system, by the name of the system.
+    #[getter]
+    fn controllers<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let all = PyDict::new(py);
+        for (name, controllers) in self.systems.names.iter().zip(&self.given.controllers) {
+            all.set_item(name, copies(py, controllers))?;
+        }
+        Ok(all)
+    }
+
+    /// External physics engine; None for the native engine.
+    #[getter]
+    fn engine(&self, py: Python<'_>) -> Option<Py<PyAny>> {
+        self.given.engine.as_ref().map(|engine| engine.clone_ref(py))
     }
 
     /// Simulate from the initial state and return the trace.

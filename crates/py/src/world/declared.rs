@@ -60,8 +60,8 @@ pub(crate) struct PyWorld {
     orbit: Option<Py<PyOrbit>>,
     earth: Option<Py<PyEarth>>,
     gravity_mode: String,
-    environment: Vec<Py<PyEffect>>,
-    contacts: Vec<Py<PyContact>>,
+    pub(crate) environment: Vec<Py<PyEffect>>,
+    pub(crate) contacts: Vec<Py<PyContact>>,
     events: Vec<Py<PyAny>>,
     rereference_beyond: f64,
 }
@@ -135,6 +135,11 @@ impl PyWorld {
     /// Returns the reference orbit, or `None` if the world has no reference orbit.
     pub(crate) fn orbit(&self, py: Python<'_>) -> Option<Py<PyOrbit>> {
         self.orbit.as_ref().map(|orbit| orbit.clone_ref(py))
+    }
+
+    /// Returns the controller of each system, or `None` for a system without one.
+    pub(crate) fn controllers(&self) -> impl Iterator<Item = Option<&Py<PyAny>>> {
+        self.systems.iter().map(|system| system.get().settings.controller.as_ref())
     }
 
     /// Returns the model of the system `name`; an unknown name is an error.

@@ -68,7 +68,7 @@ pub(crate) struct PySystem {
     pub(super) model: Py<PyModel>,
     q: Vec<f64>,
     v: Vec<f64>,
-    settings: RobotSettings,
+    pub(super) settings: RobotSettings,
     pub(super) surfaces: Option<SurfaceAssignment>,
     /// Surfaces as given in Python.
     given_surfaces: Option<Py<PyAny>>,
