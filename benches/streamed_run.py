@@ -21,6 +21,7 @@ if sys.argv[4] == "memory":  # the rows stay in memory until the run ends
     memory.is_streamed = oo.simulation.run.is_streamed = lambda *_, **__: False
 pictures = sys.argv[5] == "pictures"
 run = oo.run(sys.argv[1], sys.argv[2], quiet=True, figures=pictures, recording=pictures,
+             compress=bool(sys.argv[6:]),
              changes={"simulation.duration": float(sys.argv[3]), "simulation.time_step": "1 ms",
                       "simulation.record_every": 1})
 print(len(run.trace), run.summary["wall_s"], run.summary["certificate_passed"],
@@ -28,11 +29,14 @@ print(len(run.trace), run.summary["wall_s"], run.summary["certificate_passed"],
 """
 
 
-def measured(name: str, duration: float, where: str, pictures: str, folder: Path) -> dict[str, float | str]:
+def measured(
+    name: str, duration: float, where: str, pictures: str, folder: Path, *, compress: bool
+) -> dict[str, float | str]:
     """Run a scenario in a new process, and return what the process needed."""
     out = folder / f"{name}-{where}"
     begin = time.perf_counter()
     command = [sys.executable, "-c", _RUN, name, str(out), str(duration), where, pictures]
+    command += ["compress"] if compress else []
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     total = time.perf_counter() - begin
     rows, wall, passed, own, helpers = done.stdout.split()
@@ -53,12 +57,15 @@ def main() -> None:
     parser.add_argument("--duration", type=float, default=4000.0, help="simulated time, s")
     parser.add_argument("--compare", action="store_true", help="also keep all rows in memory")
     parser.add_argument("--no-pictures", action="store_true")
+    parser.add_argument("--compress", action="store_true", help="compress trace.npz")
     parser.add_argument("--folder", type=Path, help="where the folders of the runs are, default: temporary")
     given = parser.parse_args()
     pictures = "none" if given.no_pictures else "pictures"
     with tempfile.TemporaryDirectory(dir=given.folder) as folder:
         for where in ("disk", "memory") if given.compare else ("disk",):
-            found = measured(given.scenario, given.duration, where, pictures, Path(folder))
+            found = measured(
+                given.scenario, given.duration, where, pictures, Path(folder), compress=given.compress
+            )
             print(json.dumps(found, indent=1))
             if where == "disk" and float(found["memory of the run, MB"]) > GATE_MB:
                 sys.exit(f"the run needed more than {GATE_MB:g} MB")

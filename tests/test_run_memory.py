@@ -52,7 +52,8 @@ def test_a_run_that_does_not_fit_is_refused_before_it_starts(
     with pytest.raises(InputError, match=what) as error:
         oo.run("free_tumble", quiet=True, changes=LONG)
     assert error.value.name == "record_every" and error.value.got == 1
-    memory.check_size(built("free_tumble", LONG), tmp_path)  # with a folder, the rows are not kept in memory
+    with pytest.warns(UserWarning, match="its trace.npz will have about"):
+        memory.check_size(built("free_tumble", LONG), tmp_path)  # the rows are not kept in memory
     with pytest.raises(InputError, match="but 2 GB are available; do not view the run"):
         memory.check_size(built("free_tumble", LONG), tmp_path, is_viewed=True)
     every = int(str(error.value.expected).removeprefix(">= "))

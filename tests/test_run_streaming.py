@@ -8,42 +8,16 @@ from typing import Any
 
 import numpy as np
 import pytest
+from run_files import SHORT, columns_of, plain, stream_all, without_times
 
 import onorbit_rs as oo
 from onorbit_rs.exceptions import RunInterrupted
 from onorbit_rs.output import checkpoint as checkpoints
 from onorbit_rs.output.streamed_trace import StreamedTrace, StreamedWorldTrace
-from onorbit_rs.simulation import memory, streaming
+from onorbit_rs.simulation import streaming
 
-_TIMES = {"wall_s", "real_time_factor"}
 # a block that hangs, because the end of an advance is rounded, fails at once
 pytestmark = [pytest.mark.timeout(60), pytest.mark.filterwarnings("ignore:event .* did not happen")]
-
-SHORT = {"simulation.duration": "0.3 s", "simulation.time_step": "1 ms"}
-
-
-def without_times(summary: dict[str, Any]) -> dict[str, Any]:
-    """Returns a summary without the entries that depend on the speed of the machine."""
-    own = {key: value for key, value in summary.items() if key not in _TIMES}
-    if "systems" in own:
-        own["systems"] = {name: without_times(system) for name, system in own["systems"].items()}
-    return own
-
-
-def columns_of(folder: Path) -> dict[str, tuple[Any, bytes]]:
-    """Returns shape and bytes of every array in the trace of a folder, in the order of the file."""
-    with np.load(folder / "trace.npz") as stored:
-        return {name: (stored[name].shape, stored[name].tobytes()) for name in stored.files}
-
-
-def stream_all(monkeypatch: pytest.MonkeyPatch, block: int = 100) -> None:
-    """Makes every run with a folder write its rows in blocks of ``block`` rows."""
-    monkeypatch.setattr(memory, "FITTING", 1.0)
-    monkeypatch.setattr(streaming, "BLOCK", block)
-
-
-def plain(name: str, out: Path, **options: Any) -> oo.Run:
-    return oo.run(name, out, quiet=True, figures=False, recording=False, **options)
 
 
 @pytest.mark.parametrize(

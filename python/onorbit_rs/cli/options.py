@@ -32,6 +32,9 @@ FiguresOption = Annotated[bool, typer.Option("--figures/--no-figures", help="Dra
 RecordingOption = Annotated[
     bool, typer.Option("--recording/--no-recording", help="Write the recording for the viewer in DIR.")
 ]
+CompressOption = Annotated[
+    bool, typer.Option("--compress/--no-compress", help="Compress trace.npz to about 70 % of its size.")
+]
 SetOption = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="Change an entry of the scenario; may be repeated."),

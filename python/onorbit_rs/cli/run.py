@@ -8,6 +8,7 @@ from onorbit_rs.cli.exit_codes import fail, ignore_closed_pipe
 from onorbit_rs.cli.options import (
     CheckpointOption,
     CommandsOption,
+    CompressOption,
     DurationOption,
     FiguresOption,
     FolderArgument,
@@ -40,6 +41,7 @@ def run(
     commands: CommandsOption = None,
     figures: FiguresOption = True,
     recording: RecordingOption = True,
+    compress: CompressOption = False,
     assignments: SetOption = None,
     duration: DurationOption = None,
 ) -> None:
@@ -68,6 +70,7 @@ def run(
             commands=commands,
             figures=figures,
             recording=recording,
+            compress=compress,
             changes=changes,
         ),
         quiet=quiet,
@@ -83,6 +86,7 @@ def resume(
     checkpoint_every: CheckpointOption = None,
     figures: FiguresOption = True,
     recording: RecordingOption = True,
+    compress: CompressOption = False,
 ) -> None:
     """Resume an interrupted run, with bit-identical results.
 
@@ -100,6 +104,7 @@ def resume(
             checkpoint_every=every,
             figures=figures,
             recording=recording,
+            compress=compress,
         ),
         quiet=quiet,
         as_json=as_json,

@@ -19,7 +19,7 @@ from onorbit_rs.output.checks import CHECKS, GATE
 from onorbit_rs.output.lock import owner_of
 from onorbit_rs.output.manifest import MANIFEST, SCENARIO, SUMMARY, TRACE, read_manifest
 from onorbit_rs.output.names import split_names
-from onorbit_rs.output.npz import read_arrays
+from onorbit_rs.output.npz_reader import read_arrays
 from onorbit_rs.output.saved_trace import SavedTrace, check_shapes
 from onorbit_rs.output.saved_world import EVENTS, SavedWorldTrace, saved_world, system_in, systems_in
 from onorbit_rs.scenario import load

@@ -32,14 +32,15 @@ if TYPE_CHECKING:
     from onorbit_rs.scenario import Scenario, WorldScenario
 
 
-class Pictures(NamedTuple):
-    """Selection of the pictures that a run writes."""
+class Outputs(NamedTuple):
+    """Selection of the pictures that a run writes, and whether it compresses ``trace.npz``."""
 
     figures: bool = True
     recording: bool = True
+    compress: bool = False
 
 
-ALL = Pictures()
+ALL = Outputs()
 
 
 def write_scenario(folder: OutputFolder, scenario: Scenario | WorldScenario) -> None:
@@ -62,8 +63,10 @@ def write_trace(
     trace: Trace | WorldTrace,
     built: Built | BuiltWorld,
     more: Mapping[str, Any] = MappingProxyType({}),
+    *,
+    compress: bool = False,
 ) -> None:
-    """Write ``trace.npz``.
+    """Write ``trace.npz``, uncompressed or compressed with deflate.
 
     It contains every column of the trace by path, the columns ``more``, and the names of the joints and
     bodies of each robot.
@@ -79,7 +82,7 @@ def write_trace(
             columns = arrays_of(single)
             if len(single.rereferenced):
                 columns["rereferenced"] = np.asarray(single.rereferenced)
-        write_arrays(stream, {**columns, **more, **names})
+        write_arrays(stream, {**columns, **more, **names}, compress=compress)
 
 
 def write_summary(files: Replacement, summary: dict[str, Any]) -> None:
@@ -93,7 +96,7 @@ def write_pictures(
     trace: Trace | WorldTrace,
     summary: dict[str, Any],
     built: Built | BuiltWorld,
-    wanted: Pictures = ALL,
+    wanted: Outputs = ALL,
     *,
     tell: Callable[[str], None] = lambda doing: None,
 ) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, cast
 
@@ -20,9 +21,9 @@ from onorbit_rs.output import (
 )
 from onorbit_rs.output.clearance import add_clearances, clearance_arrays, found_clearances
 from onorbit_rs.output.manifest import TRACE
-from onorbit_rs.output.npz import read_arrays
+from onorbit_rs.output.npz_reader import read_arrays
 from onorbit_rs.output.streamed_trace import StreamedTrace, StreamedWorldTrace
-from onorbit_rs.output.write import ALL, Pictures
+from onorbit_rs.output.write import ALL, Outputs
 from onorbit_rs.scenario.build import Built
 from onorbit_rs.scenario.build_world import BuiltWorld
 from onorbit_rs.scenario.divergence import divergence
@@ -39,7 +40,7 @@ def finished(
     built: Built | BuiltWorld,
     folder: OutputFolder | None,
     tell: Callable[[str], None],
-    pictures: Pictures = ALL,
+    outputs: Outputs = ALL,
 ) -> dict[str, Any]:
     """Return the summary of a completed run with its certificate; write the results to ``folder``, if given.
 
@@ -56,13 +57,15 @@ def finished(
         add_clearances(summary, found)
         tell("writing the trace")
         with folder.replacing() as files:
-            write_trace(files, trace, built, clearance_arrays(found))
+            write_trace(files, trace, built, clearance_arrays(found), compress=outputs.compress)
             write_summary(files, summary)
-        if isinstance(trace, StreamedTrace | StreamedWorldTrace):
+        # the columns remain mapped from the files of the checkpoint, also after these files are removed
+        is_mapped = outputs.compress and os.name != "nt"
+        if isinstance(trace, StreamedTrace | StreamedWorldTrace) and not is_mapped:
             with (folder.path / TRACE).open("rb") as stream:
                 trace.read_from(read_arrays(stream, trusted=True))
     with _noting(lambda: f"trace and summary in {folder.path} are complete; {_not_drawn(folder)}"):
-        write_pictures(folder, trace, summary, built, pictures, tell=tell)
+        write_pictures(folder, trace, summary, built, outputs, tell=tell)
     folder.discard_checkpoint()
     return summary
 
@@ -103,7 +106,9 @@ def _not_drawn(folder: OutputFolder) -> str:
     return f"figures and recording are not; draw the figures with: onorbit report {word}"
 
 
-def keep_failed(error: Exception, built: Built | BuiltWorld, folder: OutputFolder | None) -> None:
+def keep_failed(
+    error: Exception, built: Built | BuiltWorld, folder: OutputFolder | None, outputs: Outputs = ALL
+) -> None:
     """Write the rows of a run that failed with an error other than divergence, and add a note to the error.
 
     Nothing happens without ``folder`` or without rows.
@@ -112,7 +117,7 @@ def keep_failed(error: Exception, built: Built | BuiltWorld, folder: OutputFolde
     if folder is None or trace is None or len(trace) == 0:
         return
     try:
-        _write_rows(trace, "failed", built, folder)
+        _write_rows(trace, "failed", built, folder, compress=outputs.compress)
         folder.discard_checkpoint()
     except Exception as full:  # the error of the run is the one to report
         error.add_note(f"the rows recorded so far could not be written: {full}")
@@ -125,7 +130,7 @@ def keep_stopped(
     built: Built | BuiltWorld,
     folder: OutputFolder | None,
     tell: Callable[[str], None],
-    pictures: Pictures = ALL,
+    outputs: Outputs = ALL,
 ) -> None:
     """Write the rows of a run that stopped early to ``folder``, if given.
 
@@ -140,7 +145,7 @@ def keep_stopped(
     if folder is None:
         return
     try:
-        _keep_rows(stop, built, folder, tell, pictures)
+        _keep_rows(stop, built, folder, tell, outputs)
     except KeyboardInterrupt:  # again
         stop.message += f"; stopped again before all results were written to {folder.path}"
     except Exception as full:  # the end of the run is what the error reports
@@ -152,14 +157,15 @@ def _keep_rows(
     built: Built | BuiltWorld,
     folder: OutputFolder,
     tell: Callable[[str], None],
-    pictures: Pictures,
+    outputs: Outputs,
 ) -> None:
     """Write the results of a run that stopped early to its folder."""
     if stop.trace is None or len(stop.trace) == 0:
         folder.discard()
         return
     diverged = isinstance(stop, SimulationError)
-    summary = _write_rows(stop.trace, "diverged" if diverged else "interrupted", built, folder)
+    status = "diverged" if diverged else "interrupted"
+    summary = _write_rows(stop.trace, status, built, folder, compress=outputs.compress)
     stop.message += f"; the trace up to this time is in {folder.path}"
     if diverged:  # a diverged run is not drawn and cannot resume
         folder.discard_checkpoint()
@@ -167,19 +173,19 @@ def _keep_rows(
     if has_checkpoint(folder.path):
         stop.message += f"; continue with: onorbit resume {shell_word(folder.path)}"
     try:
-        write_pictures(folder, stop.trace, summary, built, pictures, tell=tell)
+        write_pictures(folder, stop.trace, summary, built, outputs, tell=tell)
     except KeyboardInterrupt:  # a second Ctrl-C: the run is already stopped
         word = shell_word(folder.path)
         stop.message += f"; some figures were not drawn; draw them with: onorbit report {word}"
 
 
 def _write_rows(
-    trace: Trace | WorldTrace, status: str, built: Built | BuiltWorld, folder: OutputFolder
+    trace: Trace | WorldTrace, status: str, built: Built | BuiltWorld, folder: OutputFolder, *, compress: bool
 ) -> dict[str, Any]:
     """Write trace and summary of a run, and return the summary."""
     with np.errstate(all="ignore"):  # a diverged run contains numbers near the largest float
         summary = _summary(trace, built, status=status)
     with folder.replacing() as files:
-        write_trace(files, trace, built)
+        write_trace(files, trace, built, compress=compress)
         write_summary(files, summary)
     return summary

@@ -37,6 +37,9 @@ Messages suggest a value of ``record_every`` that gives this size: a run with th
 than 500 MB.
 """
 
+COMPRESSED, COMPRESSION_RATE = 0.7, 60e6
+"""Size of compressed rows relative to their size in memory, and how many bytes are compressed per second."""
+
 _ALWAYS = (
     "time", "q", "v", "tau", "acceleration", "momentum", "impulse", "kinetic_energy", "work", "dissipated",
     "center_of_mass",
@@ -75,10 +78,13 @@ def is_streamed(built: Built | BuiltWorld, *, has_folder: bool, is_viewed: bool)
     return has_folder and not is_viewed and estimated_bytes(built) > FITTING
 
 
-def check_size(built: Built | BuiltWorld, folder: Path | None, *, is_viewed: bool = False) -> None:
+def check_size(
+    built: Built | BuiltWorld, folder: Path | None, *, is_viewed: bool = False, compress: bool = False
+) -> None:
     """Check that the disk of ``folder`` and the memory have enough space for the rows of a run.
 
-    The memory is checked only if the run keeps its rows in memory. A warning is issued if there are many.
+    The memory is checked only if the run keeps its rows in memory. A warning is issued if there are many, in
+    memory or in a file that is not compressed.
 
     Raises
     ------
@@ -89,8 +95,10 @@ def check_size(built: Built | BuiltWorld, folder: Path | None, *, is_viewed: boo
     if size <= FITTING:
         return
     if folder is not None:
-        _check_disk(built, folder, size)
+        _check_disk(built, folder, size, compress)
     if is_streamed(built, has_folder=folder is not None, is_viewed=is_viewed):
+        if size > LARGE and not compress:
+            warnings.warn(_large_file(built, size), stacklevel=4)
         return
     needed = estimated_memory(built, has_folder=folder is not None)
     every = _rounded_up(built.scenario.simulation.record_every * size / FITTING)
@@ -109,15 +117,27 @@ def check_size(built: Built | BuiltWorld, folder: Path | None, *, is_viewed: boo
         warnings.warn(f"{what}, and needs about {_text(needed)} of memory; {fix}", stacklevel=4)
 
 
-def _check_disk(built: Built | BuiltWorld, folder: Path, size: float) -> None:
-    """Raise an error if twice the size of the rows, bytes, exceeds the free space."""
+def _large_file(built: Built | BuiltWorld, size: float) -> str:
+    every = _rounded_up(built.scenario.simulation.record_every * size / LARGE)
+    return (
+        f"the run records {rows_of(built)} rows, and its trace.npz will have about {_text(size)}; to write "
+        f"less, compress it to about {_text(COMPRESSED * size)} with --compress (compress=True), which takes "
+        f"about {size / COMPRESSION_RATE:.0f} s, or set simulation.record_every to {every}"
+    )
+
+
+def _check_disk(built: Built | BuiltWorld, folder: Path, size: float, compress: bool) -> None:
+    """Raise an error if the rows in the checkpoint and in ``trace.npz``, bytes, exceed the free space."""
     space = float(shutil.disk_usage(folder).free)
-    if 2.0 * size > space:
+    needed = size * (1.0 + (COMPRESSED if compress else 1.0))
+    if needed > space:
         every = _rounded_up(built.scenario.simulation.record_every * max(size / FITTING, 4.0 * size / space))
+        fits = not compress and size * (1.0 + COMPRESSED) <= space
+        other = "use --compress (compress=True), " if fits else ""
         raise _too_large(
-            f"the run records {rows_of(built)} rows, about {_text(size)}, and needs twice as much space on "
-            f"the disk of {folder}, which has {_text(space)}; free space, or set simulation.record_every to "
-            f"{every}", built, every,
+            f"the run records {rows_of(built)} rows, about {_text(size)}, and needs {_text(needed)} on "
+            f"the disk of {folder}, which has {_text(space)}; free space, {other}or set "
+            f"simulation.record_every to {every}", built, every,
         )  # fmt: skip
 
 

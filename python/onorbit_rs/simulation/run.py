@@ -31,7 +31,7 @@ from onorbit_rs.output import (
 )
 from onorbit_rs.output.read import check_folder
 from onorbit_rs.output.robot import CHANGED, was_changed
-from onorbit_rs.output.write import ALL, Pictures
+from onorbit_rs.output.write import ALL, Outputs
 from onorbit_rs.scenario import Scenario, WorldScenario, load
 from onorbit_rs.scenario.build import Built, build
 from onorbit_rs.scenario.build_world import BuiltWorld, build_world
@@ -155,6 +155,7 @@ def run(
     commands: str | os.PathLike[str] | Iterable[Mapping[str, Any]] | None = None,
     figures: bool = True,
     recording: bool = True,
+    compress: bool = False,
     changes: Mapping[str, Any] | None = None,
 ) -> Run:
     """Run a scenario and, with ``out``, write its output folder.
@@ -180,6 +181,9 @@ def run(
         Draw the figures in ``out``; ``onorbit report`` draws them later.
     recording : bool
         Write the recording for the viewer in ``out``.
+    compress : bool
+        Compress ``trace.npz``, to about 70 % of its size; :func:`numpy.load` and :func:`read_run` read
+        it too.
     changes : mapping, optional
         New values of entries of the scenario, by path, such as ``{"simulation.duration": "2 s"}``.
 
@@ -212,7 +216,7 @@ def run(
             write_commands(folder, given)
         writer = CheckpointWriter(folder, _digest(checked))
         return _simulate(
-            built, folder, Pictures(figures, recording), quiet=quiet, view=view, commands=given,
+            built, folder, Outputs(figures, recording, compress), quiet=quiet, view=view, commands=given,
             checkpoint=writer, checkpoint_every=every,
         )  # fmt: skip
 
@@ -225,6 +229,7 @@ def resume(
     checkpoint_every: float = CHECKPOINT_EVERY,
     figures: bool = True,
     recording: bool = True,
+    compress: bool = False,
 ) -> Run:
     """Resume an interrupted run with bit-identical results.
 
@@ -238,7 +243,7 @@ def resume(
         Show the run in the viewer, from its beginning.
     checkpoint_every : float
         Wall-clock time between two checkpoints, s.
-    figures, recording : bool
+    figures, recording, compress : bool
         As for :func:`run`.
 
     Returns
@@ -271,7 +276,7 @@ def resume(
         is_lazy = isinstance(built, Built) and is_streamed(built, has_folder=True, is_viewed=view)
         checkpoint = saved.checkpoint if is_lazy else saved.in_memory()
         return _simulate(
-            _with_warnings(built, given), folder, Pictures(figures, recording), quiet=quiet,
+            _with_warnings(built, given), folder, Outputs(figures, recording, compress), quiet=quiet,
             view=view, commands=given, checkpoint=writer, checkpoint_every=every, resume=checkpoint,
         )  # fmt: skip
 
@@ -322,7 +327,7 @@ def _digest(scenario: Scenario | WorldScenario) -> str:
 def _simulate(
     built: Built | BuiltWorld,
     folder: OutputFolder | None,
-    pictures: Pictures = ALL,
+    outputs: Outputs = ALL,
     *,
     quiet: bool,
     view: bool = False,
@@ -331,7 +336,7 @@ def _simulate(
 ) -> Run:
     """Simulate and write the results, including those of a run that was stopped or failed."""
     scenario, duration = built.scenario, built.scenario.simulation.duration
-    check_size(built, folder.path if folder else None, is_viewed=view)
+    check_size(built, folder.path if folder else None, is_viewed=view, compress=outputs.compress)
     try:
         with progress_bar(scenario.name, duration, quiet=quiet) as progress:
             trace: Trace | WorldTrace
@@ -342,16 +347,16 @@ def _simulate(
                 trace = watched(built, progress.move, **checkpoints, view=view, commands=commands)
             else:
                 trace = built.simulation.run(duration, progress=progress.move, **checkpoints)
-            summary = finished(trace, built, folder, progress.tell, pictures)
+            summary = finished(trace, built, folder, progress.tell, outputs)
             return Run(trace, summary, scenario, folder.path if folder else None, _models(built))
     except (SimulationError, RunInterrupted) as stop:
         with doing("stopped; writing the results so far", quiet=quiet) as tell:
-            keep_stopped(stop, built, folder, tell, pictures)
+            keep_stopped(stop, built, folder, tell, outputs)
         raise
     except (
         Exception
     ) as error:  # raised by a Python controller, or outside of the validity of the orbit or environment
-        keep_failed(error, built, folder)
+        keep_failed(error, built, folder, outputs)
         raise
 
 
