@@ -15,6 +15,7 @@ from onorbit_rs.exceptions import RunInterrupted
 from onorbit_rs.output import checkpoint as checkpoints
 from onorbit_rs.output.streamed_trace import StreamedTrace, StreamedWorldTrace
 from onorbit_rs.simulation import streaming
+from onorbit_rs.simulation.world_columns import WorldColumns
 
 # a block that hangs, because the end of an advance is rounded, fails at once
 pytestmark = [pytest.mark.timeout(60), pytest.mark.filterwarnings("ignore:event .* did not happen")]
@@ -59,7 +60,12 @@ def test_a_lost_row_changes_the_certificate(tmp_path: Path, monkeypatch: pytest.
 
 @pytest.mark.parametrize(
     ("name", "changes", "stop_s"),
-    [("humanoid_reach", SHORT, 0.17), ("formation", {"simulation.record_every": 1}, 2500.0)],
+    [
+        ("humanoid_reach", SHORT, 0.17),
+        ("two_spheres", SHORT, 0.2),
+        ("formation", {"simulation.record_every": 1}, 2500.0),
+        ("release_and_retreat", {"simulation.record_every": 1, "simulation.duration": "6 s"}, 4.0),
+    ],
 )
 def test_an_interrupted_run_keeps_its_rows_and_resumes_with_the_same_bits(
     name: str, changes: dict[str, Any], stop_s: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -67,7 +73,28 @@ def test_an_interrupted_run_keeps_its_rows_and_resumes_with_the_same_bits(
     plain(name, tmp_path / "whole", changes=changes)
     whole = columns_of(tmp_path / "whole")
     stream_all(monkeypatch, block=60)
-    out, apply_due = tmp_path / "out", streaming.Queue.apply_due
+    out = tmp_path / "out"
+    stop = interrupted(name, out, changes, stop_s, monkeypatch)
+    assert len(stop.trace) > 100
+    with np.load(out / "trace.npz") as part:
+        for path in part.files:
+            if (
+                path.rpartition("/")[2] == "time" and path != "events/time"
+            ):  # the last row is at the time of the interruption
+                rows = part[path][:-1].tobytes()
+                assert whole[path][1].startswith(rows) and rows
+    run = oo.resume(out, quiet=True, figures=False, recording=False)
+    assert columns_of(out) == whole
+    assert not (out / "checkpoint").exists()
+    traces = [run.trace] if name == "humanoid_reach" else run.trace.systems.values()
+    assert all(len(trace.ending) < 60 + 64 + 10 < len(trace) for trace in traces), "few rows are in memory"
+
+
+def interrupted(
+    name: str, out: Path, changes: dict[str, Any], stop_s: float, monkeypatch: pytest.MonkeyPatch
+) -> RunInterrupted:
+    """Returns the exception of a run that is interrupted after ``stop_s``."""
+    apply_due = streaming.Queue.apply_due
 
     def interrupt(queue: streaming.Queue, stepper: oo.Stepper) -> None:
         apply_due(queue, stepper)
@@ -78,17 +105,30 @@ def test_an_interrupted_run_keeps_its_rows_and_resumes_with_the_same_bits(
         patch.setattr(streaming.Queue, "apply_due", interrupt)
         with pytest.raises(RunInterrupted, match="continue with: onorbit resume") as stop:
             plain(name, out, changes=changes)
-    assert len(stop.value.trace) > 100
-    with np.load(out / "trace.npz") as part:
-        for path in part.files:
-            if (
-                path.rpartition("/")[2] == "time" and path != "events/time"
-            ):  # the last row is at the time of the interruption
-                rows = part[path][:-1].tobytes()
-                assert whole[path][1].startswith(rows) and rows
-    oo.resume(out, quiet=True, figures=False, recording=False)
-    assert columns_of(out) == whole
-    assert not (out / "checkpoint").exists()
+    return stop.value
+
+
+@pytest.mark.parametrize("is_stale", [False, True])
+def test_a_world_without_columns_of_all_systems_resumes_with_all_rows(
+    is_stale: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Checkpoints of runs in memory lack these columns, or have them only up to an earlier time."""
+    plain("two_spheres", tmp_path / "whole", changes=SHORT)
+    stream_all(monkeypatch, block=60)
+
+    def write(self: WorldColumns, in_memory: dict[str, int], kept: int) -> bool:
+        return is_stale and kept > 16 and original(self, in_memory, kept)
+
+    original = WorldColumns.write
+    with monkeypatch.context() as patch:
+        patch.setattr(WorldColumns, "write", write)
+        interrupted("two_spheres", tmp_path / "out", SHORT, 0.2, monkeypatch)
+    started = []
+    start = streaming.is_bounded
+    monkeypatch.setattr(streaming, "is_bounded", lambda *given: started.append(start(*given)) or started[-1])
+    oo.resume(tmp_path / "out", quiet=True, figures=False, recording=False)
+    assert started == [False]
+    assert columns_of(tmp_path / "out") == columns_of(tmp_path / "whole")
 
 
 def test_rows_that_cannot_be_written_stay_in_memory_until_they_can(

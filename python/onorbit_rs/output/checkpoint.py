@@ -20,7 +20,14 @@ import numpy as np
 
 from onorbit_rs import _core
 from onorbit_rs.common.counting import count
-from onorbit_rs.common.files import open_to_change, open_to_read, output_errors, read_bounded, sync_folder
+from onorbit_rs.common.files import (
+    open_to_change,
+    open_to_read,
+    output_errors,
+    read_bounded,
+    sync_folder,
+)
+from onorbit_rs.common.files import sync as sync_file
 from onorbit_rs.exceptions import CheckpointError, OnOrbitError, OutputInUseError
 from onorbit_rs.output.folder import OutputFolder
 from onorbit_rs.output.manifest import CHECKPOINT, STATE
@@ -39,12 +46,19 @@ _CHUNK = 1 << 22
 """Number of bytes that are read from a column at once."""
 
 
+class _Written(NamedTuple):
+    """Number and width of the rows of a column in its file, and their running digest."""
+
+    rows: int
+    width: int
+    digest: _Hash
+
+
 class SavedCheckpoint(NamedTuple):
-    """A checkpoint read from a folder, with the number of rows and the running digest of each column."""
+    """A checkpoint read from a folder, and what its files contain of each column."""
 
     checkpoint: Checkpoint
-    rows: dict[str, int]
-    digests: dict[str, _Hash]
+    written: dict[str, _Written]
 
     def in_memory(self) -> Checkpoint:
         """Return the checkpoint with all of its rows in memory."""
@@ -58,8 +72,7 @@ class CheckpointWriter:
     def __init__(self, folder: OutputFolder, digest: str, *, after: SavedCheckpoint | None = None) -> None:
         """Store the folder and the digest of the scenario; a resumed run continues ``after`` a checkpoint."""
         self._folder, self._path = folder, folder.path / CHECKPOINT
-        self._digest, self._rows = digest, dict(after.rows) if after else {}
-        self._digests = dict(after.digests) if after else {}
+        self._digest, self._columns = digest, dict(after.written) if after else {}
         self._has_warned = False
 
     def __call__(self, checkpoint: Checkpoint) -> bool:
@@ -74,7 +87,8 @@ class CheckpointWriter:
 
     def rows_of(self, prefix: str) -> int:
         """Return the number of rows in the files of a system, given the prefix of its columns."""
-        return self._rows.get(f"{prefix}time", 0)
+        found = self._columns.get(f"{prefix}time")
+        return found.rows if found else 0
 
     def file_of(self, column: str) -> Path:
         """Return the file of a column."""
@@ -82,6 +96,8 @@ class CheckpointWriter:
 
     def append(self, columns: Mapping[str, Any], *, must: bool = False) -> bool:
         """Write rows without a checkpoint; return False, after one warning, if they cannot be written.
+
+        A later checkpoint also contains the rows of columns that are only written here.
 
         Raises
         ------
@@ -112,36 +128,39 @@ class CheckpointWriter:
             return False
         return True
 
-    def _append_rows(self, given: Mapping[str, Any], *, sync: bool = False) -> dict[str, Any]:
-        """Append rows to the files of the columns; return the entries of the columns for the state."""
-        files = {name: _file_name(name) for name in given}
-        self._folder.expect_checkpoint((STATE, *files.values()))
-        columns: dict[str, dict[str, int | str]] = {}
-        counts: dict[str, int] = {}
-        digests: dict[str, _Hash] = {}
+    def _append_rows(self, given: Mapping[str, Any], *, sync: bool = False) -> None:
+        """Append rows to the files of the columns."""
+        known = dict.fromkeys((*self._columns, *given))
+        self._folder.expect_checkpoint((STATE, *map(_file_name, known)))
+        columns = dict(self._columns)
         for name, rows in given.items():
             new_rows, width = rows.shape
-            before = self._rows.get(name, 0)
+            before = columns.get(name, _Written(0, width, hashlib.sha256()))
             content = np.ascontiguousarray(rows, dtype="<f8").tobytes()
-            _append(self._path / files[name], content, after=8 * before * width, sync=sync)
-            counts[name] = before + new_rows
-            digests[name] = self._digests.get(name, hashlib.sha256()).copy()
-            digests[name].update(content)
-            columns[name] = {"rows": counts[name], "width": width, "sha256": digests[name].hexdigest()}
-        self._rows, self._digests = counts, digests
-        return columns
+            _append(self.file_of(name), content, after=8 * before.rows * width, sync=sync)
+            digest = before.digest.copy()
+            digest.update(content)
+            columns[name] = _Written(before.rows + new_rows, width, digest)
+        self._columns = columns
 
     def _write(self, checkpoint: Checkpoint) -> None:
         """Append the new rows, then replace the state, which contains the number of valid rows."""
-        rows, digests = self._rows, self._digests
+        before = self._columns
         try:
-            self._write_state(checkpoint, self._append_rows(checkpoint.columns, sync=True))
+            self._append_rows(checkpoint.columns, sync=True)
+            for name in self._columns.keys() - checkpoint.columns.keys():
+                sync_file(self.file_of(name))
+            self._write_state(checkpoint)
         except BaseException:  # the next checkpoint contains these rows again
-            self._rows, self._digests = rows, digests
+            self._columns = before
             raise
 
-    def _write_state(self, checkpoint: Checkpoint, columns: dict[str, Any]) -> None:
+    def _write_state(self, checkpoint: Checkpoint) -> None:
         """Replace ``state.json``; raises a CheckpointError if the state is too large."""
+        columns = {
+            name: {"rows": one.rows, "width": one.width, "sha256": one.digest.hexdigest()}
+            for name, one in self._columns.items()
+        }
         record = {
             "fingerprint": self._digest,
             "columns": columns,
@@ -192,14 +211,15 @@ def read_checkpoint(folder: Path, digest: str) -> SavedCheckpoint:
                 "it, was changed after the checkpoint; undo the change or run the scenario again",
                 path,
             )
-        columns, rows, digests = {}, {}, {}
+        columns, written = {}, {}
         for name, entry in record["columns"].items():
-            file, rows[name] = path / _file_name(name), int(entry["rows"])
-            columns[name], digests[name] = _column(file, rows[name], int(entry["width"]))
-            if digests[name].hexdigest() != entry["sha256"]:
+            file, rows, width = path / _file_name(name), int(entry["rows"]), int(entry["width"])
+            columns[name], digest_read = _column(file, rows, width)
+            written[name] = _Written(rows, width, digest_read)
+            if digest_read.hexdigest() != entry["sha256"]:
                 raise ValueError("its rows do not match their checksum, so they were changed or damaged")
         state = json.dumps(record["engine"])
-        return SavedCheckpoint(_core.Checkpoint(state, columns, wall_s=wall), rows, digests)
+        return SavedCheckpoint(_core.Checkpoint(state, columns, wall_s=wall), written)
     except CheckpointError:
         raise
     except (OSError, ValueError, KeyError, TypeError, AttributeError, OverflowError, MemoryError) as error:

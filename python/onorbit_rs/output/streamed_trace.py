@@ -120,9 +120,11 @@ class StreamedWorldTrace(_Ending, SavedWorldTrace):
         return self._with_rows(systems, slice(None)).__reduce__()
 
     def read_from(self, arrays: Mapping[str, Any]) -> None:
-        """Replace the columns of the systems by these arrays, which have the same values."""
+        """Replace all columns by these arrays, which have the same values."""
         for name, own in self.systems.items():
             own.read_from(system_in(arrays, name).arrays)
+        for name in ("time", "momentum", "kinetic_energy"):
+            object.__setattr__(self, name, arrays[name])  # the files of the first values are removed
 
     def decimated(self) -> PickledWorldTrace:
         """Return the rows at evenly spaced times, which are the same for all systems, in memory."""

@@ -110,7 +110,7 @@ def world_arrays(trace: WorldTrace) -> dict[str, Any]:
 
     The rows of ``events`` are in the order of the events in the summary, which contains their names.
     """
-    arrays = {name: np.asarray(getattr(trace, name)) for name in WORLD_COLUMNS}
+    arrays = {name: np.asanyarray(getattr(trace, name)) for name in WORLD_COLUMNS}
     for name in trace.names:
         own = trace[name]
         arrays |= {f"{name}/{path}": values for path, values in arrays_of(own).items()}

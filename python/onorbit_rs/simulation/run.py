@@ -42,7 +42,7 @@ from onorbit_rs.simulation.finish import finished, keep_failed, keep_stopped
 from onorbit_rs.simulation.live import CHECKPOINT_EVERY, watched
 from onorbit_rs.simulation.memory import check_size, is_streamed
 from onorbit_rs.simulation.replay import check_commands
-from onorbit_rs.simulation.streaming import streamed
+from onorbit_rs.simulation.streaming import is_bounded, streamed
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Model, Trace, WorldTrace
@@ -273,7 +273,7 @@ def resume(
         saved = read_checkpoint(path, digest)
         writer = CheckpointWriter(folder, digest, after=saved)
         given, built = saved_commands(folder), _built(scenario)
-        is_lazy = isinstance(built, Built) and is_streamed(built, has_folder=True, is_viewed=view)
+        is_lazy = is_streamed(built, has_folder=True, is_viewed=view) and is_bounded(built, saved.checkpoint)
         checkpoint = saved.checkpoint if is_lazy else saved.in_memory()
         return _simulate(
             _with_warnings(built, given), folder, Outputs(figures, recording, compress), quiet=quiet,

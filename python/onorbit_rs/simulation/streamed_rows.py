@@ -10,11 +10,11 @@ import numpy as np
 from onorbit_rs.exceptions import ControlError
 from onorbit_rs.output.pickling import arrays_of
 from onorbit_rs.output.streamed_trace import StreamedTrace, StreamedWorldTrace, mapped_columns
-from onorbit_rs.output.world import WORLD_COLUMNS
 from onorbit_rs.scenario.build_world import BuiltWorld
+from onorbit_rs.simulation.world_columns import KEPT_BY_RESUME, WorldColumns
 
 if TYPE_CHECKING:
-    from onorbit_rs._core import Stepper, WorldTrace
+    from onorbit_rs._core import Stepper
     from onorbit_rs.output import CheckpointWriter
     from onorbit_rs.scenario.build import Built
 
@@ -36,7 +36,7 @@ class StreamedRows:
         in_memory = _counts(stepper.columns(), self._names)
         self._dropped = {name: writer.rows_of(name) - in_memory[name] for name in self._names}
         self._can_save = True
-        self._world = _WorldColumns(stepper, writer) if self._prefixes else None
+        self._world = WorldColumns(stepper, writer) if self._prefixes else None
 
     @property
     def _names(self) -> list[str]:
@@ -60,7 +60,7 @@ class StreamedRows:
         if not self._writer.append(self._stepper.columns(since=self._since())):
             return
         in_memory = self._saved()
-        if self._world is not None and not self._world.take(in_memory):
+        if self._world is not None and not self._world.write(in_memory, KEPT):
             return
         dropped = {prefix: self._writer.rows_of(prefix) - min(rows, KEPT + 1)
                    for prefix, rows in in_memory.items()}  # fmt: skip
@@ -79,6 +79,10 @@ class StreamedRows:
             self._can_save = False
             warnings.warn(f"checkpoints are disabled for this run: {error}", UserWarning, stacklevel=2)
             return
+        if self._world is not None:  # a resumed run has only the last rows of the systems in memory
+            saved = self._saved()
+            new = _counts(checkpoint.columns, self._names)
+            self._world.write({name: saved[name] + new[name] for name in self._names}, KEPT_BY_RESUME)
         self._writer(checkpoint)
 
     def trace_of(self, ending: Any) -> StreamedTrace | StreamedWorldTrace:
@@ -110,40 +114,6 @@ class StreamedRows:
         systems = {name: found[prefix] for prefix, name in self._prefixes.items()}
         time, momentum, energy = self._world.with_last(ending)
         return StreamedWorldTrace(systems, list(ending.events), time, momentum, energy, ending)
-
-
-class _WorldColumns:
-    """Columns of a world, computed block by block before rows are removed from memory."""
-
-    def __init__(self, stepper: Stepper, writer: CheckpointWriter) -> None:
-        self._stepper = stepper
-        self._parts: list[dict[str, Any]] = []
-        self._since = -np.inf
-
-    def take(self, in_memory: dict[str, int]) -> bool:
-        """Compute the world's columns at the times that are removed from memory if ``KEPT`` rows remain.
-
-        Return False if the rows must stay in memory, because too many of them have the same time.
-        """
-        first = {prefix[:-1]: max(rows - KEPT, 0) for prefix, rows in in_memory.items()}
-        kept = self._stepper.columns(since=first)
-        times = [kept[f"{prefix}time"][:, 0] for prefix in in_memory]
-        later = [own[own > own[0]] for own in times]
-        if not all(len(own) for own in later):
-            return False
-        until = max(own[0] for own in later)
-        if until > self._since:
-            self._parts.append(dict(self._stepper.world_columns(self._since, until)))
-            self._since = until
-        return True
-
-    def with_last(self, ending: WorldTrace) -> list[Any]:
-        """Return the columns of the whole run, given the trace with its last rows."""
-        last = np.asarray(ending.time) >= self._since
-        return [
-            np.concatenate([*(part[name] for part in self._parts), np.asarray(getattr(ending, name))[last]])
-            for name in WORLD_COLUMNS
-        ]
 
 
 def _counts(columns: Any, prefixes: list[str]) -> dict[str, int]:

@@ -10,6 +10,7 @@ from onorbit_rs.exceptions import RunInterrupted
 from onorbit_rs.scenario.build_world import BuiltWorld
 from onorbit_rs.simulation.replay import Queue
 from onorbit_rs.simulation.streamed_rows import StreamedRows
+from onorbit_rs.simulation.world_columns import is_continued
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Checkpoint, Stepper
@@ -50,9 +51,9 @@ def streamed(
         If the last rows cannot be written.
     """
     settings = built.scenario.simulation
-    # the columns of a world are computed from all rows, which a resumed run of a world reads again
-    is_bounded = resume is None or not isinstance(built, BuiltWorld)
-    stepper = built.simulation.start(duration=settings.duration, resume=resume, streamed=is_bounded)
+    stepper = built.simulation.start(
+        duration=settings.duration, resume=resume, streamed=resume is None or is_bounded(built, resume)
+    )
     rows = StreamedRows(stepper, checkpoint, built)
     try:
         queue = Queue(commands, stepper.time, step=settings.time_step)
@@ -75,6 +76,11 @@ def streamed(
         if ending is not None and len(ending):
             error.trace = rows.trace_of(ending)  # type: ignore[attr-defined]
         raise
+
+
+def is_bounded(built: Built | BuiltWorld, resume: Checkpoint) -> bool:
+    """Return True if a run can be resumed from a checkpoint without all of its rows in memory."""
+    return not isinstance(built, BuiltWorld) or is_continued(resume.columns, built.systems)
 
 
 def _advance(
