@@ -188,15 +188,34 @@ def test_the_base_reaction_is_the_angle_of_rotation(reach: oo.Run) -> None:
 
 def test_forces_equal_those_of_the_wrenches(tumble: oo.Run) -> None:
     figure = figures.environment_forces(tumble.trace, tumble.model.body_names)
-    effects = list(tumble.trace.wrenches)
-    assert len(figure.axes) == 2 * len(effects)
-    drag = figure.axes[2 * effects.index("drag")]
+    (drag,) = [axes for axes in figure.axes if axes.get_ylabel() == "drag\nforce [N]"]
     names = list(tumble.model.body_names)
     drawn = {line.get_label(): line.get_ydata() for line in drag.lines}
     for name, values in drawn.items():
         force = np.linalg.norm(tumble.trace.wrenches["drag"][:, names.index(name), :3], axis=1)
         np.testing.assert_array_equal(values, force)
     assert "drag\nforce [N]" in labels(figure) and "torque [N m]" in labels(figure)
+
+
+def test_forces_and_torques_that_are_zero_or_rounding_are_listed_without_a_panel() -> None:
+    rows = np.zeros((3, 2, 6))
+    drag, light, gravity = rows.copy(), rows.copy(), rows.copy()
+    drag[:, 0, :3] = 1e-3
+    light[:, 1, :] = 1e-4
+    gravity[:, 1, 0], gravity[:, 1, 3] = 1e-3, 1e-20
+
+    def drawn(**wrenches: Any) -> tuple[list[str], str]:
+        trace = SavedTrace(
+            {"time": np.arange(3.0)} | {f"wrench_{name}": one for name, one in wrenches.items()}
+        )
+        figure = figures.environment_forces(trace, ["bus", "arm"])  # type: ignore[arg-type]
+        return [axes.get_ylabel() for axes in figure.axes], figure.get_supxlabel()
+
+    shown, note = drawn(drag=drag, light=light, gravity=gravity, field=rows)
+    assert shown == ["drag\nforce [N]", "light\nforce [N]", "torque [N m]", "gravity\nforce [N]"]
+    assert note == "zero or rounding: torque of drag, torque of gravity, force of field, torque of field"
+    assert drawn(light=light) == (["light\nforce [N]", "torque [N m]"], "")
+    assert drawn(field=rows) == ([""], "zero or rounding: force of field, torque of field")
 
 
 def test_the_acceleration_removed_in_carried_mode_is_stated(tumble: oo.Run) -> None:

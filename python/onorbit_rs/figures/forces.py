@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -40,6 +41,8 @@ MOST_BODIES = len(COLORS)
 """Largest number of bodies drawn in colour; the others are grey."""
 LEAST = 1e-16
 """Smallest value that is drawn, N or N m; smaller values are the rounding error of a removed acceleration."""
+NOTE_WIDTH = 120
+"""Number of characters of a line of the note on forces and torques that are not drawn."""
 DECADES = 1e5
 """Ratio of the largest value of all bodies to the lower end of the axis."""
 
@@ -47,10 +50,11 @@ DECADES = 1e5
 def environment_forces(trace: Trace, bodies: Sequence[str]) -> Figure:
     """Draw force and torque of every effect on every body; torques are about the body's centre of mass.
 
-    Rounding errors are not drawn. In the panel of an effect, these are magnitudes below
+    Rounding errors are not drawn. For an effect, these are magnitudes below
     :data:`~onorbit_rs.common.display_units.ROUNDING` times the largest of three values: the largest magnitude
     of the same quantity (force or torque) over all effects, and the largest force, N, and the largest torque,
-    N m, of the effect itself. Magnitudes below 1e-16 N or N m are never drawn.
+    N m, of the effect itself. Magnitudes below 1e-16 N or N m are never drawn. A force or torque without
+    larger values has no panel and is listed below the panels.
 
     Parameters
     ----------
@@ -62,21 +66,49 @@ def environment_forces(trace: Trace, bodies: Sequence[str]) -> Figure:
     time, label = clock(trace)
     wrenches = {name: np.asarray(rows) for name, rows in trace.wrenches.items()}
     shown = _largest(wrenches)
+    rounding = _rounding(wrenches)
+    drawn = {effect: [part for part in _PARTS if _size(rows, part).max() > rounding[effect, part]]
+             for effect, rows in wrenches.items()}  # fmt: skip
+    rows_drawn = [effect for effect, parts in drawn.items() if parts]
+    figure = new_figure(PAGE, 2.0)
+    grid = figure.add_gridspec(max(len(rows_drawn), 1), 2)
+    for row, effect in enumerate(rows_drawn):
+        alone = len(drawn[effect]) == 1
+        for column, part in enumerate(drawn[effect]):
+            axes = figure.add_subplot(grid[row, :] if alone else grid[row, column])
+            size, (_, unit) = _size(wrenches[effect], part), _PARTS[part]
+            _plot_bodies(axes, time, size, bodies, shown, rounding[effect, part])
+            name = f"{legend_name(effect.replace('_', ' '))}\n" if column == 0 else ""
+            tidy(axes, label if effect == rows_drawn[-1] else "", f"{name}{part} [{unit}]")
+    if not rows_drawn:
+        figure.add_subplot(grid[:, :]).set_axis_off()
+    names = legend_of_figure(figure, figure.axes[0]) if rows_drawn else []
+    note = _note([(effect, part) for effect, parts in drawn.items() for part in _PARTS if part not in parts])
+    if note:
+        figure.supxlabel(note, fontsize=SMALL, x=0.01, ha="left")
+    lines = 1 + note.count("\n") if note else 0
+    height = 0.5 + 1.35 * max(len(rows_drawn), 0.2) + 0.15 * lines
+    figure.set_figheight(height + legend_height(names, PAGE - 0.6))
+    return figure
+
+
+def _rounding(wrenches: dict[str, Floats]) -> dict[tuple[str, str], float]:
+    """Return the rounding error of force and torque of each effect, N and N m."""
     peaks = {effect: [_size(rows, part).max() for part in _PARTS] for effect, rows in wrenches.items()}
     top = np.max(list(peaks.values()), axis=0)
-    figure = new_figure(PAGE, 2.0)
-    panels = figure.subplots(len(wrenches), 2, sharex=True, squeeze=False)
-    for row, (effect, rows) in enumerate(wrenches.items()):
-        is_last = row == len(wrenches) - 1
-        for column, (what, (_, unit)) in enumerate(_PARTS.items()):
-            axes = panels[row, column]
-            rounding = max(ROUNDING * max(top[column], *peaks[effect]), LEAST)
-            _plot_bodies(axes, time, _size(rows, what), bodies, shown, rounding)
-            name = f"{legend_name(effect.replace('_', ' '))}\n" if column == 0 else ""
-            tidy(axes, label if is_last else "", f"{name}{what} [{unit}]")
-    names = legend_of_figure(figure, panels[0, 0])
-    figure.set_figheight(0.5 + 1.35 * len(wrenches) + legend_height(names, PAGE - 0.6))
-    return figure
+    return {
+        (effect, part): max(ROUNDING * max(largest, *peaks[effect]), LEAST)
+        for effect in wrenches
+        for part, largest in zip(_PARTS, top, strict=True)
+    }
+
+
+def _note(absent: Sequence[tuple[str, str]]) -> str:
+    """Return the forces and torques without a panel as text of several lines; empty if there are none."""
+    if not absent:
+        return ""
+    listed = ", ".join(f"{part} of {legend_name(effect.replace('_', ' '))}" for effect, part in absent)
+    return textwrap.fill(f"zero or rounding: {listed}", NOTE_WIDTH)
 
 
 def _size(rows: Floats, part: str) -> Floats:
@@ -109,11 +141,5 @@ def _plot_bodies(
     for color, body in zip(COLORS, shown, strict=False):
         axes.plot(*thin(time, size[:, body]), color=color, linewidth=0.9, label=legend_name(bodies[body]))
     peak = float(size.max())
-    if peak > rounding:
-        axes.set_yscale("log", nonpositive="mask")
-        axes.set_ylim(max(peak / DECADES, rounding), 3.0 * peak)
-    else:
-        text = "none" if peak == 0.0 else "none above rounding"
-        axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", fontsize=SMALL)
-        axes.set_ylim(1.0, 2.0)  # a logarithmic axis cannot show zero
-        axes.set_yticks([])
+    axes.set_yscale("log", nonpositive="mask")
+    axes.set_ylim(max(peak / DECADES, rounding), 3.0 * peak)
