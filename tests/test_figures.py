@@ -197,27 +197,6 @@ def test_forces_equal_those_of_the_wrenches(tumble: oo.Run) -> None:
     assert "drag\nforce [N]" in labels(figure) and "torque [N m]" in labels(figure)
 
 
-def test_forces_and_torques_that_are_zero_or_rounding_are_listed_without_a_panel() -> None:
-    rows = np.zeros((3, 2, 6))
-    drag, light, gravity = rows.copy(), rows.copy(), rows.copy()
-    drag[:, 0, :3] = 1e-3
-    light[:, 1, :] = 1e-4
-    gravity[:, 1, 0], gravity[:, 1, 3] = 1e-3, 1e-20
-
-    def drawn(**wrenches: Any) -> tuple[list[str], str]:
-        trace = SavedTrace(
-            {"time": np.arange(3.0)} | {f"wrench_{name}": one for name, one in wrenches.items()}
-        )
-        figure = figures.environment_forces(trace, ["bus", "arm"])  # type: ignore[arg-type]
-        return [axes.get_ylabel() for axes in figure.axes], figure.get_supxlabel()
-
-    shown, note = drawn(drag=drag, light=light, gravity=gravity, field=rows)
-    assert shown == ["drag\nforce [N]", "light\nforce [N]", "torque [N m]", "gravity\nforce [N]"]
-    assert note == "zero or rounding: torque of drag, torque of gravity, force of field, torque of field"
-    assert drawn(light=light) == (["light\nforce [N]", "torque [N m]"], "")
-    assert drawn(field=rows) == ([""], "zero or rounding: force of field, torque of field")
-
-
 def test_the_acceleration_removed_in_carried_mode_is_stated(tumble: oo.Run) -> None:
     def about(subject_of_run: figures.Subject) -> str:
         (drawing,) = [one for one in figures.drawings(subject_of_run) if one.name == "environment_forces"]

@@ -24,18 +24,19 @@ def test_rounding_errors_are_not_drawn() -> None:
     gradient = np.full((3, 2, 6), [0.0, 0.0, 0.0, 0.0, 4e-6, 0.0])
     lever = np.full((3, 2, 6), [2e-6, 0.0, 0.0, 3e-13, 0.0, 0.0])  # 0.15 µm: small, but not rounding
 
-    def said(**wrenches: Any) -> list[list[str]]:
+    def said(**wrenches: Any) -> tuple[list[str], str]:
         trace: Any = SavedTrace({"time": np.arange(3.0)} | {f"wrench_{n}": w for n, w in wrenches.items()})
-        return [
-            [text.get_text() for text in axes.texts]
-            for axes in figures.environment_forces(trace, ["base", "hand"]).axes
-        ]
+        figure = figures.environment_forces(trace, ["base", "hand"])
+        return [" ".join(axes.get_ylabel().split()) for axes in figure.axes], figure.get_supxlabel()
 
-    assert said(light=force, gradient=gradient) == [[], ["none above rounding"], ["none"], []]
-    assert said(light=force) == [[], ["none above rounding"]]
+    both = ["light force [N]", "gradient torque [N m]"]
+    note = "zero or rounding: torque of light, force of gradient"
+    assert said(light=force, gradient=gradient) == (both, note)
+    assert said(light=force) == (both[:1], "zero or rounding: torque of light")
     carried = np.full((3, 2, 6), [4e-20, 0.0, 0.0, 0.0, 0.0, 0.0])  # of 1e-5 N, removed completely
-    assert said(drag=carried) == [["none above rounding"], ["none"]]
-    assert said(light=lever, gradient=gradient) == [[], [], ["none"], []]
+    assert said(drag=carried) == ([""], "zero or rounding: force of drag, torque of drag")
+    panels = ["light force [N]", "torque [N m]", "gradient torque [N m]"]
+    assert said(light=lever, gradient=gradient) == (panels, "zero or rounding: force of gradient")
 
 
 def test_a_tracking_error_below_rounding_is_flat() -> None:

@@ -43,7 +43,11 @@ def test_the_folder_holds_the_documented_files(reach: oo.Run) -> None:
 
 
 def test_every_status_that_is_written_is_documented() -> None:
-    written = set(re.findall(r'"(\w+)"', "".join(re.findall(r"_write_rows\(.*", inspect.getsource(finish)))))
+    written = set(
+        re.findall(
+            r'"(\w+)"', "".join(re.findall(r"(?:_write_rows\(|status = ).*", inspect.getsource(finish)))
+        )
+    )
     assert written >= {"failed", "diverged", "interrupted"}
     for status in written | {"complete"}:
         assert f"``{status}``" in str(summarize.__doc__), status
@@ -177,7 +181,7 @@ def test_an_error_before_the_first_row_is_re_raised_unchanged(tmp_path: Path) ->
 def test_a_full_disk_does_not_hide_another_error(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, end: str
 ) -> None:
-    def full(*_: Any) -> None:
+    def full(*_: Any, **__: Any) -> None:
         raise OutputFolderError("cannot write trace.npz: No space left on device")
 
     monkeypatch.setattr(finish, "write_trace", full)

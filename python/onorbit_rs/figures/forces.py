@@ -104,7 +104,7 @@ def _rounding(wrenches: dict[str, Floats]) -> dict[tuple[str, str], float]:
 
 
 def _note(absent: Sequence[tuple[str, str]]) -> str:
-    """Return the forces and torques without a panel as text of several lines; empty if there are none."""
+    """Return the forces and torques without a panel as text; empty if every one has a panel."""
     if not absent:
         return ""
     listed = ", ".join(f"{part} of {legend_name(effect.replace('_', ' '))}" for effect, part in absent)

@@ -18,6 +18,8 @@ from onorbit_rs.output.npz import LOCAL_HEADER, PADDING
 _CHUNK = 1 << 22
 _MAPPED = 1 << 24
 """Size of an array, bytes, above which it is mapped from a file."""
+_MAPPED_TRUSTED = 1 << 18
+"""The same size for a file that this process has written, whose checksums are not computed."""
 _MOST_EXPANDED = 1 << 28
 """Size of the compressed arrays in memory, bytes, above which all further arrays are mapped from files."""
 _MOST_RATIO = 1032
@@ -34,7 +36,7 @@ _HEADER = re.compile(
 def read_arrays(stream: BinaryIO, *, trusted: bool = False) -> dict[str, Any]:
     """Return every array of a ``.npz`` file of numbers and texts, uncompressed or compressed with deflate.
 
-    Arrays of more than 16 MB are mapped from the file, and read-only. If they are compressed, they are
+    Arrays of more than 16 MB (256 kB if ``trusted``) are mapped from the file, and read-only. If they are compressed, they are
     written to temporary files, which are mapped and have no name. The memory used is bounded by the size of
     the file, or by 256 MB for a compressed file, even if its headers are wrong; nothing is unpickled. The
     checksums of arrays that are mapped from a ``trusted`` file, which this process has written, are not
@@ -116,7 +118,8 @@ class _Reader:
             if _is_compressed(member):
                 return self._expanded_array(stream, member.filename, left, dtype, shape, order)
             start = _content_start(self._file, member) + 10 + length
-            if left > _MAPPED and start % 8 == 0 and hasattr(self._file, "name"):
+            least = _MAPPED_TRUSTED if self._trusted else _MAPPED
+            if left > least and start % 8 == 0 and hasattr(self._file, "name"):
                 if not self._trusted:
                     _copy(stream, None, member.filename, left)  # verifies the checksum
                 return np.memmap(self._file, dtype, "r", start, shape, order)
