@@ -36,11 +36,11 @@ _HEADER = re.compile(
 def read_arrays(stream: BinaryIO, *, trusted: bool = False) -> dict[str, Any]:
     """Return every array of a ``.npz`` file of numbers and texts, uncompressed or compressed with deflate.
 
-    Arrays of more than 16 MB (256 kB if ``trusted``) are mapped from the file, and read-only. If they are compressed, they are
-    written to temporary files, which are mapped and have no name. The memory used is bounded by the size of
-    the file, or by 256 MB for a compressed file, even if its headers are wrong; nothing is unpickled. The
-    checksums of arrays that are mapped from a ``trusted`` file, which this process has written, are not
-    computed.
+    Arrays of more than 16 MB (256 kB if ``trusted``) are mapped from the file, and read-only. If they are
+    compressed, they are written to temporary files, which are mapped and have no name. The memory used is
+    bounded by the size of the file, or by 256 MB for a compressed file, even if its headers are wrong;
+    nothing is unpickled. The checksums of arrays that are mapped from a ``trusted`` file, which this process
+    has written, are not computed.
 
     Raises
     ------
