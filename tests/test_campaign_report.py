@@ -7,12 +7,15 @@ import math
 import re
 from pathlib import Path
 from statistics import NormalDist
+from typing import Any
 
 import numpy as np
 import pytest
 from campaign_files import BODY, campaign_of, spin
 
 import onorbit_rs as oo
+from onorbit_rs.campaigns import report
+from onorbit_rs.campaigns.document import Condition
 from onorbit_rs.campaigns.kept_columns import rows_every
 from onorbit_rs.campaigns.numbers import numbers_of
 from onorbit_rs.campaigns.statistics import (
@@ -144,3 +147,14 @@ def test_the_bundled_campaign_is_valid() -> None:
         plan = plan_of(load_campaign(name))
         check(plan.case(1).scenario, None, {})
         assert len(plan.value_names) == 13
+
+
+def test_the_reason_of_a_case_without_success_is_a_value_or_the_event_that_did_not_happen() -> None:
+    conditions = {name: Condition(at_most=1.0) for name in ("events.grasp.time_s", "energy_j", "angle_rad")}
+    columns: dict[str, list[Any]] = {
+        "error": [None], "certificate_passed": [True], "events.grasp.time_s": [None], "energy_j": [None],
+        "angle_rad": [2.5],
+    }  # fmt: skip
+    words = "event 'grasp' did not happen, energy_j has no value, angle_rad is 2.5"
+    assert report.reason(columns, 0, conditions) == words
+    assert report.reason(columns | {"angle_rad": [0.5]}, 0, conditions) == words.rpartition(", ")[0]

@@ -15,6 +15,7 @@ import pytest
 from commands import SPIN, onorbit, refusal
 
 from onorbit_rs import scenarios
+from onorbit_rs.campaigns.bundled import CAMPAIGNS
 
 SHORT_REACH = (
     scenarios.path("humanoid_reach")
@@ -179,6 +180,14 @@ def test_invalid_arguments_are_reported_in_one_line(tmp_path: Path) -> None:
     assert "did you mean 'humanoid_reach'" in refusal("run", "humanoid_rech")
     assert "no such folder" in refusal("show", tmp_path / "nowhere")
     assert "no run in this folder" in refusal("show", tmp_path)
+    (tmp_path / "cases.parquet").touch()
+    assert "it contains a campaign: its results are in cases.parquet" in refusal("show", tmp_path)
+    for command in ("run", "check"):
+        assert "'capture_campaign' is a campaign; run it with: onorbit campaign" in refusal(
+            command, "capture_campaign"
+        )
+    campaign = CAMPAIGNS.path("capture_campaign")
+    assert "the content is a campaign, not a scenario" in refusal("run", campaign)
     (tmp_path / "summary.json").write_text("[")
     assert "cannot read" in refusal("show", tmp_path)
     assert "is a folder" in refusal("check", tmp_path)

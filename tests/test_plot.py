@@ -48,8 +48,24 @@ def test_a_notebook_shows_a_plot_without_pyplot(reach: oo.Run) -> None:
 def test_a_misspelt_column_names_the_nearest(reach: oo.Run) -> None:
     with pytest.raises(oo.exceptions.InputError, match=r"'q/positon'; did you mean 'q/position'"):
         oo.plot(reach, "q/positon")
+    with pytest.raises(
+        oo.exceptions.InputError, match=r"'w'; names are, for example, q/position or acceleration"
+    ):
+        oo.plot(reach, "w")
+    with pytest.raises(oo.exceptions.InputError, match="a column is 3 of type int; give its name"):
+        oo.plot(reach, 3)  # type: ignore[arg-type]
     with pytest.raises(oo.exceptions.InputError, match="source is of type int"):
         oo.plot(3)  # type: ignore[arg-type]
+
+
+def test_columns_of_several_systems_share_their_label() -> None:
+    run = oo.run("two_spheres", quiet=True, changes={"simulation.duration": 0.01})
+    (axes,) = oo.plot(run).axes
+    assert axes.get_ylabel() == "q/position [m]"
+    with pytest.raises(
+        oo.exceptions.InputError, match=r"'q'; names are, for example, \w+/q/position or \w+/q/position"
+    ):
+        oo.plot(run, "q")
 
 
 def test_a_model_shows_its_tree(reach: oo.Run) -> None:

@@ -135,9 +135,16 @@ def reason(columns: dict[str, list[Any]], index: int, conditions: dict[str, Cond
     for name, condition in conditions.items():
         value = columns[name][index] if name in columns else None
         if not condition.holds(value):
-            shown = f"{value:.6g}" if isinstance(value, float) else "none" if value is None else str(value)
-            reasons.append(f"{name} is {shown}")
+            reasons.append(_not_met(name, value))
     return ", ".join(reasons)
+
+
+def _not_met(name: str, value: Any) -> str:
+    """Return the value of a result that does not meet its condition, or that the result has no value."""
+    if value is not None:
+        return f"{name} is {value:.6g}" if isinstance(value, float) else f"{name} is {value}"
+    part, _, event = name.rpartition(".")[0].partition(".")
+    return f"event {event!r} did not happen" if part == "events" else f"{name} has no value"
 
 
 def _worst(shown: Sequence[Result]) -> HtmlTable:

@@ -6,7 +6,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from onorbit_rs.cli.options import JsonOption, QuietOption, ScenarioArgument, SetOption, scenario_changes
+from onorbit_rs.cli.options import (
+    JsonOption,
+    QuietOption,
+    ScenarioArgument,
+    SetOption,
+    check_is_scenario,
+    scenario_changes,
+)
 from onorbit_rs.cli.text_output import print_line
 from onorbit_rs.common.counting import count
 from onorbit_rs.common.printable import shell_word
@@ -35,6 +42,7 @@ def check(
     from onorbit_rs.scenario.build import build
     from onorbit_rs.scenario.build_world import build_world
 
+    check_is_scenario(scenario)
     checked = load(scenario, changes=scenario_changes(assignments))
     built: Built | BuiltWorld
     if isinstance(checked, WorldScenario):

@@ -141,6 +141,17 @@ def scenario_changes(assignments: list[str] | None, duration: str | None = None)
     return changes if duration is None else changes | parsed_changes([f"simulation.duration={duration}"])
 
 
+def check_is_scenario(name: str) -> None:
+    """Raise InputError if a name is that of a bundled campaign, and of no file."""
+    from onorbit_rs.campaigns.bundled import CAMPAIGNS
+
+    if name in CAMPAIGNS.names() and not Path(name).exists():
+        raise InputError(
+            f"{name!r} is a campaign; run it with: onorbit campaign {name} --out DIR",
+            name="scenario", got=name,
+        )  # fmt: skip
+
+
 def xacro_arguments(arguments: list[str] | None) -> dict[str, str] | None:
     """Return xacro arguments (``name=value`` or ``name:=value``) as a mapping, or None without arguments."""
     pairs = [argument.replace(":=", "=", 1).partition("=") for argument in arguments or []]

@@ -20,6 +20,7 @@ from onorbit_rs.cli.options import (
     ScenarioArgument,
     SetOption,
     ViewOption,
+    check_is_scenario,
     scenario_changes,
 )
 from onorbit_rs.exceptions import InputError
@@ -57,6 +58,7 @@ def run(
             f"--checkpoint-every {checkpoint_every:g} requires a folder for checkpoints; add --out DIR",
             name="checkpoint_every", got=checkpoint_every,
         )  # fmt: skip
+    check_is_scenario(scenario)
     changes = scenario_changes(assignments, duration)
     every = CHECKPOINT_EVERY if checkpoint_every is None else checkpoint_every
     report_run(

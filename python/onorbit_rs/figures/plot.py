@@ -81,6 +81,12 @@ def plot(source: Run | RecordedRun | Trace | WorldTrace, *columns: str) -> Figur
     >>> [axes.get_ylabel() for axes in figure.axes]
     ['v/angular [rad/s]', 'kinetic_energy [J]']
     """
+    for column in columns:
+        if not isinstance(column, str):
+            raise InputError(
+                f"a column is {column!r:.40} of type {type(column).__name__}; give its name, such as 'tau'",
+                name="columns", got=column, expected="str",
+            )  # fmt: skip
     lines = selected(lines_of(source), columns)
     panels: dict[str, list[Line]] = {}
     for line in lines:
@@ -144,7 +150,7 @@ def selected(lines: Sequence[Line], columns: Sequence[str]) -> list[Line]:
             known = {head for line in lines for head in _heads(line.label.name)}
             raise InputError(
                 f"no column matches {column!r}"
-                f"{did_you_mean(column, sorted(known)) or '; names are, for example, tau or q/position'}",
+                f"{did_you_mean(column, sorted(known)) or _examples(known)}",
                 name="columns", got=column, expected=sorted(known),
             )  # fmt: skip
         found |= {line.label.name: line for line in fitting}
@@ -189,9 +195,23 @@ def _heads(name: str) -> list[str]:
 
 
 def _common(names: Sequence[str]) -> str:
-    """Return the leading parts that all names share; the whole name if there is only one."""
+    """Return the leading parts that all names share; the whole name if there is only one.
+
+    If the names begin with different systems, return the leading parts after the systems.
+    """
+    shared = _shared(names)
+    return shared if shared else _shared([name.partition("/")[2] for name in names])
+
+
+def _shared(names: Sequence[str]) -> str:
     shared = [head for head in _heads(names[0]) if all(head in _heads(name) for name in names)]
     return shared[-1] if shared else ""
+
+
+def _examples(known: set[str]) -> str:
+    """Return the end of a message, with names of columns as examples."""
+    usual = [head for head in sorted(known) if head.rpartition("q/position")[1:] == ("q/position", "")]
+    return f"; names are, for example, {' or '.join((usual + sorted(known))[:2])}"
 
 
 def _short(name: str, head: str) -> str:

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, cast
 
-from onorbit_rs.common.files import exists, file_kind, open_to_read, read_bounded
+from onorbit_rs.common.files import exists, file_kind, is_regular, open_to_read, read_bounded
 from onorbit_rs.common.printable import shell_word
 from onorbit_rs.exceptions import IntegrityError, NotFoundError, OnOrbitError, ReadError
 from onorbit_rs.output.checkpoint import has_checkpoint
@@ -245,6 +245,11 @@ def _hint(folder: Path) -> str:
     owner = owner_of(folder)
     if owner is not None and owner.pid != os.getpid():
         return f"; {owner} is writing it"
+    if is_regular(folder / "cases.parquet"):
+        return (
+            "; it contains a campaign: its results are in cases.parquet and report.html, and the option "
+            "--case of onorbit campaign repeats one case as a run"
+        )
     if not has_checkpoint(folder):
         return ""
     return f"; the run was stopped before its end; continue with: onorbit resume {shell_word(folder)}"

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from onorbit_rs.common.event_kinds import OF_CONTACT
 from onorbit_rs.common.printable import json_value
+from onorbit_rs.common.user_warnings import warn_user
 from onorbit_rs.output.checks import CHECKS
 from onorbit_rs.output.contact_totals import contact_totals
 from onorbit_rs.output.latches import latch_results
@@ -68,7 +68,7 @@ def _missed(trace: WorldTrace, built: BuiltWorld) -> list[str]:
         if event.name not in happened
     ]
     for message in found:
-        warnings.warn(message, stacklevel=2)
+        warn_user(message)
     return found
 
 

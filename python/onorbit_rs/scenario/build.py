@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from onorbit_rs import _core
+from onorbit_rs.common.user_warnings import warn_user
 from onorbit_rs.exceptions import EffectError
 from onorbit_rs.scenario.control import GripForceController
 from onorbit_rs.scenario.control.load import check_load, needs_load
@@ -83,7 +83,7 @@ def build(scenario: Scenario, *, runs_code: bool = True) -> Built:
     q, v = closed_start(scenario, model, q, v)
     built = build_around(scenario, model, (q, v), around, runs_code=runs_code)
     for message in built.warnings:
-        warnings.warn(message, stacklevel=2)
+        warn_user(message)
     return built
 
 

@@ -12,6 +12,7 @@ from onorbit_rs import _core
 from onorbit_rs.common.coordinates import LINEAR, POSITION, QUATERNION
 from onorbit_rs.common.rotations import matrix_from_quaternion
 from onorbit_rs.common.suggestions import did_you_mean, nearest
+from onorbit_rs.common.user_warnings import warn_user
 from onorbit_rs.exceptions import ControlError, FrameError, OnOrbitError, SimulationError, WorldError
 from onorbit_rs.relative import to_world
 from onorbit_rs.scenario.build import (
@@ -116,7 +117,7 @@ def build_world(scenario: WorldScenario, *, runs_code: bool = True) -> BuiltWorl
     messages = tuple(dict.fromkeys([*_warnings(systems), *given]))
     for message in messages:
         if not _is_issued(scenario, message):
-            warnings.warn(message, stacklevel=2)
+            warn_user(message)
     return BuiltWorld(scenario, systems, around.orbit, around.earth, world, messages)
 
 

@@ -108,7 +108,8 @@ def _entry(inner: Any, step: str | int, path: str, at: Location, following: str 
         raise _not_inside(path, at, inner)
     if inner.get(step) is None:
         if isinstance(following, int):
-            raise _invalid(path, f"there is no list {step!r}; set the whole list")
+            hint = did_you_mean(str(step), inner) or "; set the whole list"
+            raise _invalid(path, f"there is no list {step!r}{hint}")
         inner[step] = {}
     return inner[step]
 
@@ -125,6 +126,8 @@ def _index(inner: list[Any], step: str | int, path: str, at: Location) -> int:
 
 def _not_inside(path: str, at: Location, inner: Any) -> InputError:
     hint = did_you_mean(str(at[-1]), inner) if at and isinstance(inner, dict) else ""
+    if at and at[-1] == "robot" and isinstance(inner, str):
+        hint = "; a campaign can vary robot.links and robot.joints, a run takes them from the robot's file"
     kind = "a mapping" if isinstance(inner, dict) else f"{inner!r:.40}"
     return _invalid(path, f"{_written(at) or 'the scenario'} is {kind}, which has no such entry{hint}")
 

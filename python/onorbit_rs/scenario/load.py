@@ -99,6 +99,9 @@ def check(data: Any, file: Path | None, lines: Lines) -> AnyScenario:
             "template)"
         )
         raise scenario_error(message, file, None)
+    if "campaign" in data:
+        message = "the content is a campaign, not a scenario; run it with onorbit campaign or oo.campaign"
+        raise scenario_error(message, file, lines.get(("campaign",)))
     if "systems" in data:
         world = WorldScenario.checked(data, file, lines)
         if len(world.systems) > 1:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 import os
 import shutil
-import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from onorbit_rs.common.user_warnings import warn_user
 from onorbit_rs.exceptions import InputError
 from onorbit_rs.output.columns import row_shape
 from onorbit_rs.scenario.build_world import BuiltWorld
@@ -98,7 +98,7 @@ def check_size(
         _check_disk(built, folder, size, compress)
     if is_streamed(built, has_folder=folder is not None, is_viewed=is_viewed):
         if size > LARGE and not compress:
-            warnings.warn(_large_file(built, size), stacklevel=4)
+            warn_user(_large_file(built, size))
         return
     needed = estimated_memory(built, has_folder=folder is not None)
     every = _rounded_up(built.scenario.simulation.record_every * size / FITTING)
@@ -114,7 +114,7 @@ def check_size(
         raise _too_large(f"{what}, and needs about {_text(needed)} of memory, but {_text(free)} are "
                          f"available; {fix}", built, every)  # fmt: skip
     if size > LARGE:
-        warnings.warn(f"{what}, and needs about {_text(needed)} of memory; {fix}", stacklevel=4)
+        warn_user(f"{what}, and needs about {_text(needed)} of memory; {fix}")
 
 
 def _large_file(built: Built | BuiltWorld, size: float) -> str:

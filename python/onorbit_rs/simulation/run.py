@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, cast
 from onorbit_rs.common.files import exists
 from onorbit_rs.common.numbers import finite_float
 from onorbit_rs.common.progress import doing, progress_bar
+from onorbit_rs.common.user_warnings import warn_user
 from onorbit_rs.engines import versions
 from onorbit_rs.exceptions import (
     InputError,
@@ -304,7 +305,7 @@ def _with_warnings(built: Built | BuiltWorld, commands: list[Command]) -> Built 
     """Warn of controllers that follow commands in a run without commands; return the run with warnings."""
     messages = tuple(warnings_without(built.scenario)) if not commands else ()
     for message in messages:
-        warnings.warn(message, stacklevel=3)
+        warn_user(message)
     return replace(built, warnings=(*built.warnings, *messages)) if messages else built
 
 
