@@ -91,12 +91,12 @@ def _of_the_controls(subject: Subject) -> Iterator[Drawing]:
             about = f"Desired minus obtained positions of the joints{whose}"
             name = "joint_errors" if is_alone else f"joint_errors_{file_part(control)}"
             yield Drawing(name, about, partial(control_errors, trace, control, joints, model))
-    for control, force in (subject.grips or {}).items():
+    for control, grip in (subject.grips or {}).items():
         if control in trace.tracking and np.any(trace.tracking[control]):
             about = (
-                f"Desired and actual mean normal force of the fingers that the controller {control} closes."
+                f"Commanded and actual mean normal force of the fingers that the controller {control} closes."
             )
-            drawing = partial(grip_force, trace, control, force)
+            drawing = partial(grip_force, trace, control, grip)
             yield Drawing(f"grip_force_{file_part(control)}", about, drawing)
     if model is None:
         return

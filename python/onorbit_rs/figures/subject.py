@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from onorbit_rs.figures.grip import Grip
 from onorbit_rs.scenario.control import GripForceController, JointLaw
 from onorbit_rs.scenario.control.selection import joint_group, tool_of
 from onorbit_rs.scenario.load import load
@@ -42,7 +43,7 @@ class Subject:
     joint_controls : dict
         Names of the joints of each control in joint space, by the name of the control.
     grips : dict
-        Desired forces of the controls that close a gripper, N, by the name of the control.
+        Controls that close a gripper, by their names.
     mu : float or None
         Gravitational parameter, m³/s²; None without a planet.
     earth : Earth or None
@@ -59,7 +60,7 @@ class Subject:
     model: Model | None = None
     tools: tuple[Tool, ...] = ()
     joint_controls: dict[str, list[str]] | None = None
-    grips: dict[str, float] | None = None
+    grips: dict[str, Grip] | None = None
     mu: float | None = None
     earth: Earth | None = None
     is_the_papers: bool = False
@@ -80,7 +81,7 @@ def subject_of(
         if isinstance(control, JointLaw):
             joint_controls[getattr(control, "name", "control")] = joints
         elif isinstance(control, GripForceController):
-            grips[getattr(control, "name", "control")] = control.force
+            grips[getattr(control, "name", "control")] = Grip(control.force, control.ramp)
         elif frame is not None:
             tools.append(Tool(getattr(control, "name", ""), frame, joints))
     return Subject(

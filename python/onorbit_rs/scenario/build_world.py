@@ -25,8 +25,6 @@ from onorbit_rs.scenario.build import (
     check_record_every,
     controlled,
 )
-from onorbit_rs.scenario.control.grip_checks import check_grip
-from onorbit_rs.scenario.control.grip_force import GripForceControl
 from onorbit_rs.scenario.engine import build_world_engine
 from onorbit_rs.scenario.environment.surfaces import build_surfaces
 from onorbit_rs.scenario.events import split_path
@@ -88,7 +86,6 @@ def build_world(scenario: WorldScenario, *, runs_code: bool = True) -> BuiltWorl
             for name, alone in single.items()
         }  # fmt: skip
     _check_frames(scenario, models)
-    _check_grips(scenario, models, systems)
 
     def simulation() -> _core.Simulation:
         others = {name: Neighbour(built.model, built.q, built.v) for name, built in systems.items()}
@@ -152,15 +149,6 @@ def _check_frames(scenario: WorldScenario, models: dict[str, _core.Model]) -> No
             system, frame = split_path(path)
             with located(scenario, "events", index, "do", "capture", side):
                 _check_frame(models[system], frame)
-
-
-def _check_grips(scenario: WorldScenario, models: dict[str, _core.Model], systems: dict[str, Built]) -> None:
-    """Raise an error for grippers whose fingers do not oppose each other or open too little."""
-    for name, system in scenario.systems.items():
-        for index, control in enumerate(system.controllers or ()):
-            if isinstance(control, GripForceControl):
-                with located(scenario, "systems", name, "controllers", index):
-                    check_grip(control, name, models, systems[name].q, scenario.contacts)
 
 
 def _check_frame(model: _core.Model, frame: str) -> None:

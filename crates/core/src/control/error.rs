@@ -42,6 +42,21 @@ pub enum ControlError {
     )]
     FingerWithoutContact { control: String, joint: String },
     #[error(
+        "control '{control}': {who} not approach any other link of '{system}' that may touch the object, so nothing \
+         opposes their force; check the signs of closing_rate, or declare a contact of the opposite finger",
+        who = match &fingers[..] {
+            [finger] => format!("the link {finger} does"),
+            fingers => format!("the links {} do", fingers.join(", ")),
+        }
+    )]
+    NothingOpposes { control: String, system: String, fingers: Vec<String> },
+    #[error(
+        "control '{control}': the gripper opens by {opening} m at most, but the narrowest shape of {object} is {width} m \
+         wide; use a wider gripper, or another part of the object",
+        opening = short(*opening), width = short(*width)
+    )]
+    TooWide { control: String, opening: f64, object: String, width: f64 },
+    #[error(
         "control '{control}' grips with a given force and has no reference, so '{option}' has no effect; omit it"
     )]
     GripOption { control: String, option: &'static str },

@@ -8,13 +8,13 @@ use crate::spatial::{Scalar, Vec3};
 
 /// Finger of a gripper, moved by a joint of the group of a control or by a joint that mimics one of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Finger {
+pub(crate) struct Finger {
     /// Index in the group of the joint that moves the finger, or of the joint that it mimics.
-    pub(super) place: usize,
+    pub(crate) place: usize,
     /// Index in the model of the joint that moves the finger.
-    pub(super) joint: usize,
+    pub(crate) joint: usize,
     /// Rate of the joint that moves the finger, divided by the rate of the joint of the group.
-    pub(super) ratio: f64,
+    pub(crate) ratio: f64,
 }
 
 /// Sums of the normal forces that oppose the closing motion of a finger.
@@ -22,12 +22,13 @@ pub(super) struct Finger {
 pub(super) struct FingerForce {
     /// Sum of the magnitudes of the forces, N.
     pub(super) normal: f64,
-    /// Sum of the efforts of the forces on the joint that moves the finger, N m (N).
+    /// Sum of the efforts of the forces on the joint of the group: their virtual work per displacement of that
+    /// joint, N m (N).
     pub(super) effort: f64,
 }
 
 /// Returns the fingers that a group of joints moves; `joints` has their indices in the model.
-pub(super) fn fingers_of(joints: &[usize], model: &Model) -> Vec<Finger> {
+pub(crate) fn fingers_of(joints: &[usize], model: &Model) -> Vec<Finger> {
     let own = joints.iter().enumerate().map(|(place, &joint)| Finger { place, joint, ratio: 1.0 });
     let mut fingers: Vec<Finger> = own.collect();
     let mut number = 0;
@@ -52,28 +53,77 @@ impl Finger {
         (first..model.nodes()[first].end).contains(&body)
     }
 
-    /// Returns the effort, N m (N), with which a force acts on the joint of the finger: `aᵀ (r × F)` about
-    /// the axis `a` of a revolute joint, or `aᵀ F` along that of a prismatic joint. Requires the kinematics
-    /// of the configuration `q` in `data`.
-    fn effort<S: Scalar>(&self, force: &NormalForce, (model, data, q): (&Model, &Data<S>, &[f64])) -> f64 {
-        let body = &data.bodies[self.joint + 1];
-        let rot_wb = base_rotation(q);
-        let axis = rot_wb * body.rot_bk.z.map(|x| x.value());
-        let origin = rot_wb * body.pos_b.map(|x| x.value()) + Vec3::from_slice(q);
-        match model.nodes()[self.joint + 1].axis {
-            Axis::Revolute => axis.dot((force.point - origin).cross(force.force)),
-            Axis::Prismatic => axis.dot(force.force),
-        }
+    /// Returns true if a closed loop contains the joint of the finger.
+    pub(super) fn is_in_loop(&self, model: &Model) -> bool {
+        model.closures().iter().any(|closure| match &closure.constraint {
+            Constraint::Frames { frames, .. } => {
+                self.moves(frames[0].body, model) != self.moves(frames[1].body, model)
+            }
+            Constraint::Mimic { .. } => false,
+        })
+    }
+
+    /// Returns the effort, N m (N), with which a force on a body that the finger moves acts on the joint of
+    /// the group: `ρ e` with the ratio `ρ` of the finger and the effort `e` on its joint or, in a robot with
+    /// closed loops, `Σ_j (∂q_j/∂q_g) e_j` with the rates in `loops` ([`FingerLoops`](super::finger_loops)).
+    fn effort<S: Scalar>(
+        &self,
+        force: &NormalForce,
+        fingers: &[Finger],
+        loops: Option<(&[f64], usize)>,
+        robot: (&Model, &Data<S>, &[f64]),
+    ) -> f64 {
+        let Some((rates, k)) = loops else { return self.ratio * joint_effort(self.joint, force, robot) };
+        let own = joints_of(self, force.body, fingers, robot.0);
+        own.map(|j| rates[j * k + self.place] * joint_effort(j, force, robot)).sum()
+    }
+}
+
+/// Returns those of the joints that move a body which belong to `finger`: the joints from the body to that of
+/// the finger without those of fingers in between, and the joints before it if no other finger comes first.
+fn joints_of<'a>(
+    finger: &'a Finger,
+    body: usize,
+    fingers: &'a [Finger],
+    model: &'a Model,
+) -> impl Iterator<Item = usize> + 'a {
+    let path = std::iter::successors(Some(body), |&k| Some(model.nodes()[k].parent)).take_while(|&k| k > 0);
+    let owner = move |j: usize| {
+        let above = fingers.iter().filter(|other| other.moves(j + 1, model)).map(|other| other.joint).max();
+        above.or_else(|| {
+            fingers.iter().filter(|other| other.moves(body, model)).map(|other| other.joint).min()
+        })
+    };
+    path.map(|k| k - 1).filter(move |&j| owner(j) == Some(finger.joint))
+}
+
+/// Returns the effort, N m (N), with which a force acts on a joint (index) that moves its body: `aᵀ (r × F)`
+/// about the axis `a` of a revolute joint, or `aᵀ F` along that of a prismatic joint. Requires the kinematics
+/// of the configuration `q` in `data`.
+fn joint_effort<S: Scalar>(
+    joint: usize,
+    force: &NormalForce,
+    (model, data, q): (&Model, &Data<S>, &[f64]),
+) -> f64 {
+    let body = &data.bodies[joint + 1];
+    let rot_wb = base_rotation(q);
+    let axis = rot_wb * body.rot_bk.z.map(|x| x.value());
+    let origin = rot_wb * body.pos_b.map(|x| x.value()) + Vec3::from_slice(q);
+    match model.nodes()[joint + 1].axis {
+        Axis::Revolute => axis.dot((force.point - origin).cross(force.force)),
+        Axis::Prismatic => axis.dot(force.force),
     }
 }
 
 /// Computes the contact forces that oppose the closing motion of each finger. Contacts between fingers are
-/// ignored. `closing_rate` has the sign of the closing motion for each joint of the group. Requires the
-/// kinematics of the configuration `q` in `data`.
+/// ignored. `closing_rate` has the sign of the closing motion for each joint of the group. `loops` has the
+/// rates of all joints per rate of those of the group, and the number of the latter, for a robot with closed
+/// loops. Requires the kinematics of the configuration `q` in `data`.
 pub(super) fn measure<S: Scalar>(
     fingers: &[Finger],
     closing_rate: &PerJoint,
     forces: &[NormalForce],
+    loops: Option<(&[f64], usize)>,
     robot: (&Model, &Data<S>, &[f64]),
     out: &mut [FingerForce],
 ) {
@@ -82,8 +132,8 @@ pub(super) fn measure<S: Scalar>(
     for force in forces.iter().filter(|force| !force.other.is_some_and(is_finger)) {
         for (finger, out) in fingers.iter().zip(&mut *out) {
             if finger.moves(force.body, robot.0) {
-                let effort = finger.effort(force, robot);
-                if effort * finger.ratio * closing_rate.at(finger.place) < 0.0 {
+                let effort = finger.effort(force, fingers, loops, robot);
+                if effort * closing_rate.at(finger.place) < 0.0 {
                     out.normal += force.force.norm();
                     out.effort += effort;
                 }

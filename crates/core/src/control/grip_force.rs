@@ -18,7 +18,8 @@ use crate::model::{Axis, BASE_NQ, Model};
 /// `τ = λ (F + ∫ i (F − N) dt) − d q̇ − p Δ`
 ///
 /// with the lever `λ` of the joint: the effort that balances a normal force of 1 N at each of its fingers.
-/// The lever follows from the points and normals of the contacts. `Δ` is the displacement of the joint since
+/// The lever follows from the points and normals of the contacts and, in a robot with closed loops, from the
+/// motion of the finger that the loops impose. `Δ` is the displacement of the joint since
 /// all fingers touched, without its component along the closing motion; the stiffness `p` thus keeps
 /// independent joints from moving sideways together with the object. If a finger loses contact, the gripper
 /// closes at its closing rate again.
@@ -78,17 +79,18 @@ impl GripForce {
     }
 
     /// Checks that the effort limits of the prismatic joints of the group permit the force, assuming that the
-    /// contact normals are parallel to the joint axes. The lever of a revolute joint is not known before the
-    /// contact.
+    /// contact normals are parallel to the joint axes. The levers of revolute joints and of joints in closed
+    /// loops are not known before the contact.
     fn check_efforts(&self, control: &str, joints: &[usize], model: &Model) -> Result<(), ControlError> {
         let fingers = fingers_of(joints, model);
         for (place, &j) in joints.iter().enumerate() {
             let is_prismatic = |joint: usize| model.nodes()[joint + 1].axis == Axis::Prismatic;
             let own = fingers.iter().filter(|finger| finger.place == place && is_prismatic(finger.joint));
+            let is_known = is_prismatic(j) && !own.clone().any(|finger| finger.is_in_loop(model));
             let levers: f64 = own.map(|finger| finger.ratio.abs()).sum();
             let (joint, effort) = (&model.joints()[j], self.force * levers);
             let limit = self.effort_limit.at(place).min(joint.limits.effort.unwrap_or(f64::INFINITY));
-            if is_prismatic(j) && effort > limit {
+            if is_known && effort > limit {
                 let (control, joint, force) = (control.to_owned(), joint.name.clone(), self.force);
                 return Err(ControlError::GripEffort { control, joint, force, effort, limit });
             }
@@ -174,10 +176,10 @@ impl ControlLaw for GripForce {
 }
 
 /// Writes, for each joint of the group, the effort that balances a normal force of 1 N at each of its
-/// fingers, m (1): `λ = −Σ ρ e/N` with the ratio `ρ` of a finger, its normal force `N` and the effort `e`.
+/// fingers, m (1): `λ = −Σ e/N` with the normal force `N` of a finger and its effort `e` on the joint.
 fn write_levers(fingers: &[Finger], forces: &[FingerForce], levers: &mut [f64]) {
     levers.fill(0.0);
     for (finger, force) in fingers.iter().zip(forces) {
-        levers[finger.place] -= finger.ratio * force.effort / force.normal;
+        levers[finger.place] -= force.effort / force.normal;
     }
 }

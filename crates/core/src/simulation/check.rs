@@ -29,7 +29,8 @@ impl Simulation {
     /// or axes differ from those of the orbit; invalid names, brakes, events, contacts or controls; a closed
     /// loop or mimic joint whose constraint the initial state violates; a setting that an external engine
     /// does not support; a reference in an unknown frame; a reference without a tool; a reference that starts
-    /// too far from the tool or the joints that follow it.
+    /// too far from the tool or the joints that follow it; a gripper without opposing fingers, or one whose
+    /// opening is narrower than the object.
     pub fn check(&self) -> Result<(), SimulationError> {
         self.check_each(|system| check_state(&system.model, &system.q, &system.v))?;
         SimulationError::check_positive("time_step", self.time_step)?;
@@ -74,7 +75,8 @@ impl Simulation {
             self.check_engine()?;
         }
         self.place_moving_frames()?;
-        self.check_each(check_system)
+        self.check_each(check_system)?;
+        self.check_each(|system| self.check_grips(system))
     }
 
     /// Checks each system. If there are several, an error contains the name of the system.

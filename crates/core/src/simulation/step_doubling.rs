@@ -6,6 +6,7 @@ use super::equations::EquationsOfMotion;
 use super::error::SimulationError;
 use super::external_loads::ExternalLoads;
 use super::integrator::Integration;
+use super::rounding_errors::RoundingErrors;
 use super::state::State;
 use super::trace::CoordinateDrift;
 use super::tree::Tree;
@@ -25,6 +26,9 @@ const EARLY: [usize; 3] = [4, 16, 64];
 /// Largest difference of two values that is treated as a rounding error, in units of the machine epsilon
 /// times their magnitude.
 const ROUNDING: f64 = 16.0;
+/// Largest difference that is treated as a rounding error of the contact forces, in units of their measured
+/// standard deviation.
+const DEVIATIONS: f64 = 4.0;
 
 /// Step doubling of a run: some steps are repeated as two half steps, and the differences between the
 /// resulting states are summed.
@@ -32,6 +36,10 @@ const ROUNDING: f64 = 16.0;
 /// A local error of order `p + 1` is smaller by a factor of `2^p` after two half steps. For the fourth-order
 /// Runge-Kutta method, the difference therefore equals the local error up to a sixteenth of that error. The
 /// sum bounds the error of a run unless the motion amplifies errors, as chaotic motion does.
+///
+/// The sum contains no rounding errors. Those of contact forces are not negligible ([`RoundingErrors`]), and
+/// no shorter step reduces their sum of magnitudes. Their signs are random, so that the rates change by the
+/// root of the sum of their squares.
 pub(super) struct StepDoubling<S> {
     whole: State<S>,
     halved: State<S>,
@@ -41,6 +49,7 @@ pub(super) struct StepDoubling<S> {
     every: usize,
     /// Sum of the magnitudes of all accelerations of each tree at the start of the step, rad/s² or m/s².
     changes: Vec<f64>,
+    rounding: RoundingErrors<S>,
     /// Errors of each tree.
     pub(super) errors: Vec<Errors>,
 }
@@ -67,13 +76,23 @@ pub(super) struct Drift {
     last: [f64; 2],
     /// Sums of the differences over the steps before the last probe, m and m/s or rad and rad/s.
     sum: [f64; 2],
+    /// Standard deviation of the rounding error of the rate in a step at the last probe, m/s or rad/s, and
+    /// the sum of its squares over the steps before the last probe.
+    #[serde(default)]
+    rounding: [f64; 2],
     /// Largest magnitude of the rate at any probe, m/s or rad/s.
     fastest: f64,
 }
 
 impl Drift {
+    /// Returns the sums `sum` after `steps` more steps.
     fn until(&self, steps: f64) -> [f64; 2] {
         [0, 1].map(|i| self.sum[i] + self.last[i] * steps)
+    }
+
+    /// Returns the sum of the squares of the rounding errors after `steps` more steps.
+    fn rounding_until(&self, steps: f64) -> f64 {
+        self.rounding[1] + self.rounding[0] * self.rounding[0] * steps
     }
 }
 
@@ -87,7 +106,9 @@ impl Errors {
     /// base's origin; coordinate `j + 1` is joint `j`.
     pub(super) fn drift(&self, coordinate: usize, steps: usize) -> CoordinateDrift {
         let drift = &self.drifts[coordinate];
-        let [position, rate] = drift.until((steps - self.step) as f64);
+        let more = (steps - self.step) as f64;
+        let [position, rate] = drift.until(more);
+        let rate = rate + drift.rounding_until(more).sqrt();
         let joint = coordinate.checked_sub(1);
         let of_joint = |x: &[f64]| joint.and_then(|j| x.get(j)).copied().unwrap_or(0.0);
         let fastest = drift.fastest.max(of_joint(&self.jumps.fastest));
@@ -104,7 +125,7 @@ impl Errors {
         let steps = (step - self.step) as f64;
         self.turn[1] = self.turn(step);
         for drift in &mut self.drifts {
-            drift.sum = drift.until(steps);
+            (drift.sum, drift.rounding[1]) = (drift.until(steps), drift.rounding_until(steps));
         }
         self.step = step;
     }
@@ -121,6 +142,7 @@ impl<S: Scalar> StepDoubling<S> {
             start: trees.iter().map(|tree| Data::new(&tree.model)).collect(),
             every,
             changes: vec![0.0; trees.len()],
+            rounding: RoundingErrors::new(state),
             errors: trees.iter().map(|tree| Errors::new(tree.model.joint_count())).collect(),
         }
     }
@@ -157,7 +179,7 @@ impl<S: Scalar> StepDoubling<S> {
     }
 
     /// Computes one whole step over `interval`, s, and two half steps from `state`, and stores the sums of
-    /// the magnitudes of the accelerations at the start.
+    /// the magnitudes of the accelerations at the start, and the rounding errors of the accelerations.
     fn repeat(
         &mut self,
         interval: (f64, f64),
@@ -171,6 +193,7 @@ impl<S: Scalar> StepDoubling<S> {
         for (changes, first) in self.changes.iter_mut().zip(&integration.stages.first) {
             *changes = first.acceleration.iter().map(|x| x.value().abs()).sum();
         }
+        self.rounding.measure(interval, state, equations, integration)?;
         self.halved.copy_from(state);
         for half in [(interval.0, middle), (middle, interval.1)] {
             equations.project_momentum(&mut self.halved);
@@ -185,27 +208,32 @@ impl<S: Scalar> StepDoubling<S> {
     fn compare<W>(&mut self, state: &State<S>, h: f64, equations: &EquationsOfMotion<'_, S, W>) {
         for (number, (errors, tree)) in self.errors.iter_mut().zip(&equations.trees).enumerate() {
             let [start, whole, halved] = [state, &self.whole, &self.halved].map(|state| &state.trees[number]);
-            errors.compare(start, [whole, halved], h, self.changes[number], tree.model.mass());
+            let scales = (self.changes[number], self.rounding.of(number));
+            errors.compare(start, [whole, halved], h, scales, tree.model.mass());
         }
     }
 }
 
 impl Errors {
     /// Stores the differences between the states after one step of length `h`, s, from `start` and after two
-    /// half steps. `changes` is the sum of the magnitudes of all accelerations, rad/s² or m/s², and `mass`
-    /// the mass of the tree, kg.
+    /// half steps. `changes` is the sum of the magnitudes of all accelerations, rad/s² or m/s²; `rounding`
+    /// has the rounding errors of the accelerations ([`RoundingErrors::of`]), and `mass` is the mass of the
+    /// tree, kg.
     fn compare<S: Scalar>(
         &mut self,
         start: &TreeState<S>,
         [whole, halved]: [&TreeState<S>; 2],
         h: f64,
-        changes: f64,
+        (changes, rounding): (f64, &[f64]),
         mass: f64,
     ) {
         let [a, b] = [whole, halved].map(|state| Quat::from_xyzw(&state.q[QUATERNION]));
         let rates: f64 = start.v[3..].iter().map(|x| x.value().abs()).sum();
         let forced = h * (changes + rates * rates);
         let beyond = |difference: f64, scale: f64| (difference - ROUNDING * f64::EPSILON * scale).max(0.0);
+        for (drift, acceleration) in self.drifts.iter_mut().zip(rounding) {
+            drift.rounding[0] = h * acceleration;
+        }
         self.turn[0] = beyond(log_so3(a.conjugate().product(b)).norm().value(), 1.0);
         let (origin, joints) = self.drifts.split_first_mut().expect("the base has an entry");
         let off = |a: Vec3<S>, b: Vec3<S>| (a - b).norm().value();
@@ -213,17 +241,19 @@ impl Errors {
         let speed = Vec3::from_slice(&start.v).norm().value();
         let (j, j_halved) = (whole.impulse.linear, halved.impulse.linear);
         origin.fastest = origin.fastest.max(speed);
+        let random = DEVIATIONS * origin.rounding[0];
         origin.last = [
             beyond(off(p, p_halved), p.norm().value() + h * (speed + forced)),
-            beyond(off(j, j_halved), j.norm().value()) / mass,
+            (beyond(off(j, j_halved), j.norm().value()) / mass - random).max(0.0),
         ];
         for (i, joint) in joints.iter_mut().enumerate() {
             let off = |a: S, b: S| (a - b).value().abs();
             let (q, v) = (whole.q[BASE_NQ + i], whole.v[BASE_NV + i]);
             joint.fastest = joint.fastest.max(v.value().abs()).max(start.v[BASE_NV + i].value().abs());
+            let random = DEVIATIONS * joint.rounding[0];
             joint.last = [
                 beyond(off(q, halved.q[BASE_NQ + i]), q.value().abs() + h * (rates + forced)),
-                beyond(off(v, halved.v[BASE_NV + i]), v.value().abs() + forced),
+                (beyond(off(v, halved.v[BASE_NV + i]), v.value().abs() + forced) - random).max(0.0),
             ];
         }
     }

@@ -80,6 +80,8 @@ impl IntoPython for ControlError {
             | Self::ControlEnded { ref control }
             | Self::GripEffort { ref control, .. }
             | Self::GripOption { ref control, .. }
+            | Self::NothingOpposes { ref control, .. }
+            | Self::TooWide { ref control, .. }
             | Self::FingerWithoutContact { ref control, .. } => {
                 raise(py, "ControlError", &message, &fields!(py, "name": control))
             }

@@ -54,7 +54,10 @@ impl<S: Scalar> ControllerSet<'_, S> {
             if let Some(law) = control.law.grip().filter(|_| state.is_running()) {
                 let ControlState { fingers, finger_forces, .. } = state;
                 let robot = (model, data, &self.q[..]);
-                measure(fingers, &law.closing_rate, &self.normal_forces, robot, finger_forces);
+                let loops = self.finger_loops.as_mut();
+                let rates =
+                    loops.map(|loops| (loops.rates(model, data, &control.joints), control.joints.len()));
+                measure(fingers, &law.closing_rate, &self.normal_forces, rates, robot, finger_forces);
             }
             if state.is_running() {
                 let evaluated = state.evaluate(control, t, &self.q[BASE_NQ..], &self.v[BASE_NV..]);

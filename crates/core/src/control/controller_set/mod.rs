@@ -14,6 +14,7 @@ use crate::control::control::{Begin, Control};
 use crate::control::control_law::{ControlLaw, JointCommand};
 use crate::control::control_state::{ControlMemory, ControlState};
 use crate::control::error::ControlError;
+use crate::control::finger_loops::FingerLoops;
 use crate::control::goal::Outcome;
 use crate::control::hybrid_dynamics::HybridDynamics;
 use crate::control::known_tree::KnownTree;
@@ -68,6 +69,9 @@ pub struct ControllerSet<'a, S> {
     known: Option<Box<KnownTree>>,
     /// Solver for the torques of a robot with closed loops; `None` if the robot has none.
     looped: Option<Box<Looped<S>>>,
+    /// Motion of the joints that closed loops impose on the fingers of a grip-force law; `None` without
+    /// closed loops or such a law.
+    finger_loops: Option<Box<FingerLoops<S>>>,
     /// Normal forces of the contacts on the robot; empty if no law uses them.
     normal_forces: Vec<NormalForce>,
     /// True if the next update repeats the previous one; see [`ControllerSet::set_repeated`].
@@ -97,6 +101,7 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         let is_whole = |control: &Control| is_tree && task_on_all_joints(control, n).is_some();
         let whole_robot = controls.iter().any(is_whole).then(|| Box::new(ComputedTorqueWork::new(model)));
         let needs_error = |control: &Control| control.law.control_law().uses_error() && !is_whole(control);
+        let has_grip = controls.iter().any(|control| control.law.grip().is_some());
         let compensates =
             |control: &Control| control.law.control_law().compensates_environment() == Some(true);
         let state = |control: &Control| ControlState::new(control, model, needs_error(control));
@@ -126,7 +131,8 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
             events: Vec::new(),
             group: [zeros(n), zeros(n), zeros(n)],
             known: None,
-            looped: looped(model, tasks),
+            looped: Looped::of_robot(model, tasks).map(Box::new),
+            finger_loops: FingerLoops::new(model).filter(|_| has_grip).map(Box::new),
             normal_forces: Vec::new(),
             is_repeated: false,
         })
@@ -361,13 +367,6 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         }
         Ok(())
     }
-}
-
-/// Allocates the solver for the torques of a robot with closed loops; returns `None` if the robot has no
-/// loops.
-fn looped<S: Scalar>(model: &Model, controls: usize) -> Option<Box<Looped<S>>> {
-    let names = model.closures().iter().map(|closure| Some(closure.name.clone())).collect();
-    Looped::new(model, (0..model.joint_count()).collect(), names, controls).map(Box::new)
 }
 
 /// Returns the solver for the torques of the tree whose model the laws use; `None` if it has no closed loops.

@@ -35,6 +35,12 @@ impl<S: Scalar> Looped<S> {
         (!loops.is_empty()).then_some(Self { loops, dynamics })
     }
 
+    /// Allocates the solver for a single robot and up to `tasks` tasks; returns `None` if it has no loops.
+    pub(super) fn of_robot(model: &Model, tasks: usize) -> Option<Self> {
+        let names = model.closures().iter().map(|closure| Some(closure.name.clone())).collect();
+        Self::new(model, (0..model.joint_count()).collect(), names, tasks)
+    }
+
     /// Sets the reduced model of the tree and its constraints. Requires in `data` the results of
     /// [`free_floating_recursion`](crate::dynamics::free_floating_recursion), which computed `reduced`.
     pub(super) fn update(&mut self, model: &Model, data: &Data<S>, reduced: &FreeFloating<S>) {

@@ -32,23 +32,32 @@ impl<S: Scalar> ClosedLoops<S> {
         jacobian: &mut [f64],
         right: &mut [f64],
     ) {
-        let (n, nv) = (model.joint_count(), model.nv());
-        self.update_rows(data);
+        self.joint_jacobian(model, data, jacobian);
         let mut joint_rows = std::mem::take(&mut self.joint_rows);
-        let JointRows { jacobian: all, at_rest, drift } = &mut joint_rows;
-        all.resize(self.rows.len() * nv, S::of(0.0));
-        at_rest.resize(nv, S::of(0.0));
+        let JointRows { at_rest, drift, .. } = &mut joint_rows;
+        at_rest.resize(model.nv(), S::of(0.0));
         drift.resize(self.rows.len(), S::of(0.0));
-        dense_response::jacobian(model, data, &self.rows, all);
-        for (to, from) in jacobian.chunks_exact_mut(n).zip(all.chunks_exact(nv)) {
-            to.iter_mut().zip(&from[BASE_NV..]).for_each(|(to, from)| *to = from.value());
-        }
         drift.iter_mut().zip(&self.rows).for_each(|(drift, row)| *drift = row.acceleration(data, at_rest));
         for closure in 0..self.closures.len() {
             let range = self.range_of(closure);
             rows::add_drift(&self.closures[closure], data, &self.rows[range.clone()], &mut drift[range]);
         }
         right.iter_mut().zip(&*drift).for_each(|(right, drift)| *right = -drift.value());
+        self.joint_rows = joint_rows;
+    }
+
+    /// Computes the Jacobian `K`, `(m, n)`, of the constraints on the joint rates, `K q̇ = 0`, as
+    /// [`Self::joint_constraints`] does. Requires up-to-date poses in `data`.
+    pub(crate) fn joint_jacobian(&mut self, model: &Model, data: &Data<S>, jacobian: &mut [f64]) {
+        let (n, nv) = (model.joint_count(), model.nv());
+        self.update_rows(data);
+        let mut joint_rows = std::mem::take(&mut self.joint_rows);
+        let all = &mut joint_rows.jacobian;
+        all.resize(self.rows.len() * nv, S::of(0.0));
+        dense_response::jacobian(model, data, &self.rows, all);
+        for (to, from) in jacobian.chunks_exact_mut(n).zip(all.chunks_exact(nv)) {
+            to.iter_mut().zip(&from[BASE_NV..]).for_each(|(to, from)| *to = from.value());
+        }
         self.joint_rows = joint_rows;
     }
 }

@@ -30,6 +30,15 @@ impl Contacts {
         }
     }
 
+    /// Returns true if any pieces press on each other with a compliant normal force during the step.
+    pub(in crate::simulation) fn press(&self) -> bool {
+        let is_pressing = |&number: &usize| {
+            let touching = &self.list[number];
+            touching.law.is_some() && touching.mode.phase.is_closed()
+        };
+        self.near.iter().any(is_pressing)
+    }
+
     /// Returns the indices of the declared contacts with these names.
     pub(in crate::simulation) fn numbers_of(&self, names: &[String]) -> Vec<usize> {
         names.iter().filter_map(|name| self.names.iter().position(|own| own == name)).collect()
