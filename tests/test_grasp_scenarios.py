@@ -136,6 +136,41 @@ def test_a_missed_latch_pushes_the_target_away(tmp_path: Path) -> None:
     assert closed["time_s"] is not None and closed["nearest_m"] < 0.01
 
 
+@pytest.mark.filterwarnings("ignore:event 'capture' did not happen:UserWarning")
+def test_a_hand_without_the_command_opens_and_retreats() -> None:
+    run = oo.run("hand_retreats", quiet=True)
+    summary, time = run.summary, np.asarray(run.trace["servicer"].time)
+    assert summary["certificate_passed"] and not kinds(run, "capture")
+    servicer = summary["systems"]["servicer"]
+    assert servicer["control_grip_result"] == "succeeded"
+    assert not servicer["joint_rates_exceeded"] and not servicer["joint_limits_exceeded"]
+    error = np.asarray(run.trace["servicer"].tracking["grip"])[:, 0]
+    assert np.abs(error[(time > 10.5) & (time < 13.0)]).max() < 0.1  # of 25 N
+    assert 13.0 < max(event["time_s"] for event in kinds(run, "lift_off")) < 14.0
+    places = relative(run, "servicer", "grasp", "target", "probe_tip")
+    held = (time > 10.5) & (time < 13.0)
+    moved = np.ptp(places[held], axis=0)
+    assert moved[2] < 2e-5  # friction holds the rod
+    assert np.linalg.norm(moved[:2]) < 2e-3  # the fingers, each with its own motor, yield sideways
+    assert places[-1, 2] - places[held][-1, 2] > 0.1  # the hand is behind the ball by this much more
+    drift = np.linalg.norm(np.diff(np.asarray(run.trace["target"].center_of_mass)[[0, -1]], axis=0))
+    assert drift < 0.05  # the grip hardly pushes the satellite
+
+
+def test_the_command_prevents_the_retreat() -> None:
+    simulation = build_world(load("hand_retreats")).simulation  # type: ignore[arg-type]
+    stepper = simulation.start()
+    stepper.advance_to(11.0)
+    stepper.trigger("capture")
+    stepper.advance_to(18.0)
+    trace: Any = stepper.trace()
+    (capture,) = [event for event in trace.events if event.kind == "capture"]
+    assert capture.time == pytest.approx(11.0, abs=5e-3)
+    rates = np.abs(np.asarray(trace["servicer"].v)[-1, 6:])
+    assert rates.max() < 0.02  # at rest together, and the fingers open
+    assert np.all(np.asarray(trace["servicer"].q)[-1, -3:] > 0.0)
+
+
 def changed(name: str, tmp_path: Path, *pairs: tuple[str, str]) -> Path:
     text = scenarios.path(name).read_text(encoding="utf-8")
     for old, new in pairs:
