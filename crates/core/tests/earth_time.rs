@@ -100,6 +100,7 @@ fn the_error_of_an_epoch_names_the_wrong_part() {
         ("2024-04-31T12:00:00 UTC", "from 1 to 30 in 2024-04"),
         ("2024-03-01T24:00:00 UTC", "the hour is 24 and must be from 0 to 23"),
         ("2024-03-01T12:60:00 UTC", "the minute is 60 and must be from 0 to 59"),
+        ("2024-03-01T12:00.5 UTC", "the minutes have decimals; write whole minutes, and seconds"),
         ("2024-03-01T12:00:61 UTC", "the second is 61 and must be from 0 to 60"),
         ("2024-03-01T12:00:60 UTC", "the second is 60 in a minute without a leap second of UTC"),
     ] {

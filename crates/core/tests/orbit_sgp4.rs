@@ -149,6 +149,12 @@ fn corrupted_lines_are_refused_with_their_column() {
         }
     }
     assert!(matches!(replaced(2, 9, "199.2682"), ElementSetError::Range { .. }));
+    let on_day =
+        |day: &str| MeanElements::from_tle(&LINES[0].replace("00179.78495062", day), LINES[1], false);
+    assert!(on_day("00366.50000000").is_ok() && on_day("01365.99999999").is_ok());
+    for day in ["00367.00000000", "01366.00000000", "99366.50000000"] {
+        assert!(matches!(on_day(day), Err(ElementSetError::Column { line: 1, column: 21, .. })), "{day}");
+    }
     let short = MeanElements::from_tle(&LINES[0][..68], LINES[1], false);
     assert_eq!(short, Err(ElementSetError::Length { line: 1, got: 68 }));
     let wide = MeanElements::from_tle(&LINES[0].replace('U', "Ü"), LINES[1], false);

@@ -360,6 +360,16 @@ fn invalid_references_are_refused() {
     let error = PoseSpline::waypoints(&same, &Timing::Limits(LIMITS), true).unwrap_err();
     assert_eq!(error, ReferenceError::SamePoint { point: 0 });
     assert_eq!(Line::within(start.clone(), &start, &LIMITS), Err(ReferenceError::NoLimit));
+    let tiny = RateLimit { rate: 1e-309, ..RateLimit::NONE };
+    let tiny = TaskLimits { linear: tiny, angular: tiny };
+    for ramp in [None, Some(0.2)] {
+        let error = TimeLaw::within(&tiny, ramp, |law| Line::new(start.clone(), &poses()[1], law));
+        let is_infinite = |error: &ReferenceError| match error {
+            ReferenceError::NotFinite { name, value } => *name == "duration" && *value == f64::INFINITY,
+            _ => false,
+        };
+        assert!(error.as_ref().is_err_and(is_infinite), "{error:?}");
+    }
     let negative = TaskLimits { linear: RateLimit { rate: -1.0, ..RateLimit::NONE }, ..LIMITS };
     let error = Line::within(start.clone(), &poses()[1], &negative).unwrap_err();
     assert_eq!(error, ReferenceError::LimitNotPositive { name: "speed".to_owned(), value: -1.0 });

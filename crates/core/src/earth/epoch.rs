@@ -43,6 +43,9 @@ impl Epoch {
     pub fn parse(text: &str) -> Result<Self, EarthError> {
         let invalid = |fault: String| EarthError::Epoch { text: text.to_owned(), fault };
         let (fields, scale) = split_scale(text.trim()).ok_or_else(|| invalid(without_scale(text)))?;
+        if has_fractional_minute(fields) {
+            return Err(invalid("the minutes have decimals; write whole minutes, and seconds".to_owned()));
+        }
         let (date, nanoseconds) = numbers(fields).ok_or_else(|| invalid(OTHER_FORM.to_owned()))?;
         let [year, month, day, hour, minute, second] = date;
         let year = i32::from(year);
@@ -238,6 +241,12 @@ fn numbers(text: &str) -> Option<([u16; 6], u32)> {
     }
     let nanoseconds = is_number(fraction, 9).then(|| format!("{fraction:0<9}").parse().ok())??;
     Some((fields, nanoseconds))
+}
+
+/// Returns true if a text such as `2024-03-01T12:00.5` has decimals, but no seconds.
+fn has_fractional_minute(text: &str) -> bool {
+    let whole = text.split_once('.').map_or("", |(whole, _)| whole);
+    whole.matches(':').count() == 1
 }
 
 /// Returns true if the text consists of digits, at least 1 and at most `longest`.

@@ -309,7 +309,7 @@ pub static TRACKING: Column = column!(
     tracking,
     "tracking_*",
     (T, k),
-    "m and rad, or rad and m of the joints",
+    "m and rad, or rad and m of the joints, or N",
     "W",
     Controls,
     WHOLE,

@@ -42,7 +42,7 @@ impl Epoch {
                 let length = days_since_2000(year_after, month_after, 1) - days_since_2000(year, month, 1);
                 (1..=length).contains(&day).then(|| days_since_2000(year, month, day))?
             }
-            [year, day] if (1..=366).contains(&day) => days_since_2000(year, 1, 1) + day - 1,
+            [year, day] if (1..=days_of_year(year)).contains(&day) => days_since_2000(year, 1, 1) + day - 1,
             _ => return None,
         };
         let is_time = time.next().is_none() && hour < 24 && minute < 60 && seconds < 61.0;
@@ -107,6 +107,11 @@ fn days_since_2000(year: i64, month: i64, day: i64) -> i64 {
     365 * y + y.div_euclid(4) - y.div_euclid(100) + y.div_euclid(400) + days_of_months + day - 730_426
 }
 
+/// Returns the number of days of a Gregorian year.
+pub(super) fn days_of_year(year: i64) -> i64 {
+    days_since_2000(year + 1, 1, 1) - days_since_2000(year, 1, 1)
+}
+
 /// Returns the Gregorian year, month and day for a number of days since 2000-01-01.
 fn civil(days: i64) -> (i64, i64, i64) {
     // a lower bound of the year, for days before and after 2000
@@ -149,6 +154,7 @@ mod tests {
             assert_eq!(read.day, epoch.day, "{text}");
             assert!((read.seconds - epoch.seconds).abs() < 1e-6, "{text}");
         }
+        assert_eq!(Epoch::parse("2024-366T00:00:00"), Epoch::parse("2024-12-31T00:00:00"));
         assert_eq!(Epoch::parse("2024-060T06:00:00"), Epoch::parse("2024-02-29T06:00:00.0Z"));
         assert_eq!(Epoch::of_year(2000, 1.5).julian_date(), (2_451_544.5, 0.5));
         for (whole, part) in
@@ -191,6 +197,9 @@ mod tests {
             "2024-01-01T00:00:nan",
             "2024-01-01T00:00:00:00",
             "2024-1e1-01T00:00:00",
+            "2023-366T00:00:00",
+            "2024-367T00:00:00",
+            "1900-366T00:00:00",
             "24-01-01T00:00:00",
             "06-27T18:50:19",
         ] {

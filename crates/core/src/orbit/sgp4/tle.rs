@@ -1,7 +1,7 @@
 //! Parser of two-line element sets (TLE).
 
 use super::elements::{MeanElements, REV_DAY};
-use super::epoch::Epoch;
+use super::epoch::{Epoch, days_of_year};
 use super::error::ElementSetError;
 
 /// Columns between the fields of line 1 and of line 2, counted from 1, which must be blank.
@@ -134,11 +134,13 @@ impl MeanElements {
         let year: i64 =
             one.columns(19, 20).trim().parse().map_err(|_| one.wrong(19, 20, "two digits of a year"))?;
         let day = one.decimal(21, 32)?;
-        if !(1.0..367.0).contains(&day) {
-            return Err(one.wrong(21, 32, "a day of the year, 1 to 366"));
-        }
         // two-digit years stand for 1957 to 2056
-        let epoch = Epoch::of_year(if year < 57 { 2000 + year } else { 1900 + year }, day);
+        let year = if year < 57 { 2000 + year } else { 1900 + year };
+        let last = days_of_year(year);
+        if !(1.0..(last + 1) as f64).contains(&day) {
+            return Err(one.wrong(21, 32, "a day of the year, 1 to 365, or 366 in a leap year"));
+        }
+        let epoch = Epoch::of_year(year, day);
         one.decimal(34, 43)?; // SGP4 ignores the derivatives of the mean motion, but they must be valid
         one.with_exponent(45)?;
         Self {
