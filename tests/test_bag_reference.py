@@ -183,12 +183,12 @@ TWICE = [state(1.7e9 + time, [NAMES[0], NAMES[0]], [0, 1]) for time in TIMES]
 
 INVALID: dict[str, tuple[dict[str, list[Any]], dict[str, Any], type[OnOrbitError], str]] = {
     "no joints": ({"/chatter": [STRING]}, {}, ReadError, "no topic with JointState .*its topics: /chatter"),
-    "several": ({"/a": ONE, "/b": ONE}, {}, ReadError, "give one as 'topic': /a, /b"),
-    "other topic": ({"/a": ONE, "/c": [STRING]}, {"topic": "/c"}, ReadError, "give one of the topics /a"),
+    "several": ({"/a": ONE, "/b": ONE}, {}, ReadError, r"joint motions \(/a, /b\); give one as 'topic'"),
+    "other topic": ({"/a": ONE, "/c": [STRING]}, {"topic": "/c"}, ReadError, "topics with joint motions: /a"),
     "misspelt topic": (
         {"/joint_states": states()}, {"topic": "/joint_state"}, ReadError, "did you mean '/joint_states'",
     ),
-    "one message": ({"/a": ONE}, {}, ReadError, "it has 1 message with the followed joints; a motion"),
+    "one message": ({"/a": ONE}, {}, ReadError, "it has 1 message with the followed joints and different"),
     "back in time": ({"/a": BACK}, {}, ReadError, r"message 6 is at 0.04 s, after 0.08 s"),
     "doubled": ({"/a": TWICE}, {}, ReadError, f"message 1 names {NAMES[0]} more than once"),
     "too short": ({"/a": SHORT}, {}, ReadError, "in message 6 are 7, 2 and 0; give one position"),

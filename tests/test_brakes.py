@@ -203,7 +203,11 @@ BAD: tuple[tuple[list[oo.Brake], str, Any], ...] = (
     ([oo.Brake("b", "spin"), oo.Brake("b", "spin")], "two brakes of one system have the name 'b'", None),
     ([oo.Brake("b", "spin"), oo.Brake("c", "spin")], "'b' and 'c' are both on the joint 'spin'", None),
     ([oo.Brake("b", "spin", engaged=True)], "starts with the rate 2 rad/s", None),
-    ([oo.Brake("b", "spin")], "the brakes of the system 'chaser' are: b", oo.Engage("e", "chaser/c", at=0)),
+    (
+        [oo.Brake("b", "spin")],
+        "the only brake of the system 'chaser' is 'b'",
+        oo.Engage("e", "chaser/c", at=0),
+    ),
     ([], "the system 'chaser' has no brakes", oo.Disengage("e", "chaser/c", at=0)),
     ([], "there is no system 'craft'", oo.Engage("e", "craft/c", at=0)),
     ([], "as in 'chaser/elbow_brake'", oo.Engage("e", "c", at=0)),

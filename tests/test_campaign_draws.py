@@ -106,7 +106,7 @@ def test_a_choice_takes_every_value_equally_often() -> None:
         ({"uniform": [1, 1]}, "the first must be smaller"),
         ({"normal": [0, -1]}, "the standard deviation is -1; it must be above zero"),
         ({"normal": [0, 1], "within": [3, 2]}, "the first must be smaller"),
-        ({"normal": [0, 1], "within": [8, 9]}, "has a probability of 6.2e-16"),
+        ({"normal": [0, 1], "within": [8, 9]}, "the probability of the interval 'within' is 6.2"),
         ({"uniform": [0, 1], "within": [0, 1]}, "'within' applies only to 'normal'"),
         ({"uniform": [0, 1], "normal": [0, 1]}, "given: uniform, normal"),
         ({"unifrom": [0, 1]}, "did you mean 'uniform'"),

@@ -18,6 +18,8 @@ from onorbit_rs.campaigns import report
 from onorbit_rs.campaigns.document import Condition
 from onorbit_rs.campaigns.kept_columns import rows_every
 from onorbit_rs.campaigns.numbers import numbers_of
+from onorbit_rs.campaigns.report import _worst
+from onorbit_rs.campaigns.results import Result, percentile_rows
 from onorbit_rs.campaigns.statistics import (
     rank_correlation,
     ranks,
@@ -121,6 +123,12 @@ def test_the_report_shows_success_sensitivities_and_reasons(tmp_path: Path) -> N
     shown = [abs(float(number)) for number in re.findall(r"\s(-?0\.\d{3,})\s", section)]
     assert shown == sorted(shown, reverse=True)
     assert min(shown) >= significant_correlation(24)
+
+
+def test_extreme_cases_are_named_by_their_numbers_and_have_a_value() -> None:
+    result = Result("drift", "drift", "m", np.array([1.0, math.nan, 3.0, -math.inf]))
+    assert _worst([result], [10, 11, 12, 13]).rows == [["drift", "12, 10"]]
+    assert next(percentile_rows([result], [10, 11, 12, 13]))[-1] == 12
 
 
 @pytest.mark.usefixtures("no_campaign_report")

@@ -151,6 +151,14 @@ def test_kept_columns_have_the_rows_of_the_run(tmp_path: Path) -> None:
         oo.campaign(spin(keep={"columns": ["kinetik_energy"]}))
 
 
+@pytest.mark.usefixtures("no_campaign_report")
+def test_no_columns_are_written_if_all_cases_fail(tmp_path: Path) -> None:
+    vary = {"simulation.time_step": {"set": {"choice": [0.5]}}}  # longer than the duration
+    table = oo.campaign(campaign_of(BODY, vary, 2, keep={"columns": ["v"]}), tmp_path)
+    assert table["status"].to_pylist() == ["failed", "failed"]
+    assert not (tmp_path / "columns.parquet").exists()
+
+
 def test_a_case_that_raises_is_kept_and_the_campaign_goes_on(tmp_path: Path) -> None:
     vary = {"orbit.eccentricity": {"add": {"uniform": [-0.001, 0.001]}}}
     orbit = {"kind": "kepler", "semi_major_axis": "7000 km", "eccentricity": 0.0}
@@ -311,7 +319,7 @@ def test_invalid_arguments_are_refused(options: dict[str, Any], error: type, wor
 
 def test_a_case_that_does_not_exist_is_refused() -> None:
     for case in (-1, 8):
-        with pytest.raises(InputError, match="the campaign has the cases 0 to 7"):
+        with pytest.raises(InputError, match="give a number from 0 to 7"):
             oo.campaign_case(spin(), case)
     with pytest.raises(NotFoundError):
         oo.campaign_case("nowhere", 1)
@@ -342,4 +350,4 @@ def test_the_command_writes_the_files_and_the_folder_of_a_case(
     assert (out / "case_2" / "summary.json").exists()
     wrong = onorbit("campaign", str(file), "--case", "8")
     assert wrong.returncode == 2
-    assert "the campaign has the cases 0 to 7" in wrong.stderr
+    assert "give a number from 0 to 7" in wrong.stderr

@@ -251,7 +251,7 @@ def test_wrong_entries_of_a_scenario(entry: str, message: str, tmp_path: Path) -
 @needs_coacd
 def test_too_few_pieces_are_a_warning(tmp_path: Path) -> None:
     with pytest.warns(
-        UserWarning, match=r"the 2 convex pieces of .* have \d+ % more volume .* pieces, which is 2"
+        UserWarning, match=r"the 2 convex pieces of .* have \d+ % more volume .* 'pieces', which is 2"
     ):
         oo.Shape.mesh(prism(tmp_path / "u.obj", U), pieces=2)
 

@@ -282,11 +282,10 @@ def test_only_external_controls_that_have_not_ended_take_commands() -> None:
     ]
     stepper = oo.Simulation(model, q, v, controller=controls, time_step=1e-2).start()
     assert stepper.external == {"arm": names[:4]}
-    with pytest.raises(
-        Errors.ControlError, match=r"'wrist' does not follow external commands.*those that do are: arm"
-    ):
+    only = r".*the only control that follows them is 'arm'"
+    with pytest.raises(Errors.ControlError, match="'wrist' does not follow external commands" + only):
         stepper.send("wrist", position=MOVE[:3])
-    with pytest.raises(Errors.ControlError, match=r"'control'.*the known names are: arm"):
+    with pytest.raises(Errors.ControlError, match="no control 'control' follows" + only):
         stepper.send("control", position=MOVE)
     with pytest.raises(Errors.ControlError, match="is driven by control 'arm'"):
         stepper.command({names[0]: 1.0})

@@ -133,7 +133,7 @@ def coefficients(**entries: float) -> oo.GravityField:
     ("entries", "message"),
     [
         ({"c20": -1.0826e-3}, "not fully normalised"),
-        ({"c11": 1e-3}, "degree 1, order 1 reach 0.001"),
+        ({"c11": 1e-3}, "degree 1, order 1 is 0.001"),
         ({"s31": 0.7}, "truncated"),
         ({"c12": 1e-9}, r"c\[1, 2\] is .* this term does not exist"),
         ({"s20": 1e-9}, r"s\[2, 0\] is"),

@@ -134,13 +134,15 @@ def refused(**options: Any) -> str:
 
 
 def test_loads_and_forces_that_cannot_be_are_refused() -> None:
-    assert "the loops are: left, right" in refused(internal_forces=[oo.InternalForce("rigt")])
-    assert "does not know" in refused(knows=[])
+    assert "loops that transmit forces are: left, right" in refused(
+        internal_forces=[oo.InternalForce("rigt")]
+    )
+    assert "do not know" in refused(knows=[])
     assert "does not hold at t = 0" in refused(tool="left_link_6")
     model = four_bar()
     q = model.closed_configuration(start(model))
     for law, force, problem in [
-        (oo.JointPid(p=1.0), [1.0, 0.0, 0.0], "its law does not use them"),
+        (oo.JointPid(p=1.0), [1.0, 0.0, 0.0], "which its controller does not use"),
         (oo.JointComputedTorque(), None, "commands a moment about z"),
     ]:
         moment = None if force else [0.0, 0.0, 1.0]
@@ -189,7 +191,7 @@ def test_the_scenario_moves_the_module_with_both_arms(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("changes", "expected"),
     [
-        (("loop: right_grasp", "loop: right_gasp"), "the loops are: left_grasp, right_grasp"),
+        (("loop: right_grasp", "loop: right_gasp"), "loops that transmit one are: left_grasp, right_grasp"),
         (
             ("module/berthing_ring   #", "modul/berthing_ring   #"),
             "controllers[1].load: 'modul/berthing_ring'",

@@ -277,9 +277,7 @@ def test_an_unusable_mesh_is_warned_about_once_and_replaced(tmp_path: Path) -> N
 def test_a_collision_mesh_replaces_a_missing_visual_mesh(tmp_path: Path) -> None:
     (tmp_path / "hull.stl").write_bytes(stl_binary())
     hull = '<collision><geometry><mesh filename="{}.stl"/></geometry></collision>'
-    with pytest.warns(
-        UserWarning, match=r"^1 mesh file was not found, the first being 'package://gone/arm\.stl'"
-    ):
+    with pytest.warns(UserWarning, match=r"^1 mesh file was not found: 'package://gone/arm\.stl'"):
         model = robot(
             tmp_path, 'filename="hull.stl"', 'filename="package://gone/arm.stl"',
             collision=hull.format("hull") + hull.format("gone"),

@@ -232,7 +232,8 @@ def test_a_manifest_with_half_a_surrogate_pair_in_a_name_is_rejected(
     (tmp_path / "manifest.json").write_bytes(sealed(record))
     for ask in (read_summary, lambda folder: oo.run("kepler_orbit", folder, force=True)):
         with pytest.raises(
-            ReadError, match=r"manifest\.json: it (names|lists) .*; the files of the run cannot be verified"
+            ReadError,
+            match=r"manifest\.json: it (names|lists) .*, so the files of the run cannot be verified",
         ):
             ask(tmp_path)
 

@@ -78,7 +78,7 @@ def test_a_checkpoint_that_cannot_be_written_warns_once_and_the_run_continues(
         whole = oo.run(data, tmp_path / "out", quiet=True, checkpoint_every=0.0)
     assert calls["failed"] == 1 and calls["written"] > 1 and len(kept) == 1
     (said,) = {str(warning.message) for warning in caught if "checkpoint" in str(warning.message)}
-    assert "No space left on device; the run continues and will try later" in said
+    assert "No space left on device; the run continues and will try again later" in said
     monkeypatch.setattr(OutputFolder, "discard_checkpoint", discard)
     again = oo.resume(kept[0], quiet=True)
     for name in whole.trace.columns():

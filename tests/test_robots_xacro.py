@@ -179,11 +179,11 @@ BODIES = {
     "missing file": ('<xacro:include filename="other.xacro"/>', ("'other.xacro'", "does not exist")),
     "endless macro": (
         '<xacro:macro name="m"><xacro:m/></xacro:macro><xacro:m/>',
-        ("nested too deeply: the macro 'm' is nested in itself",),
+        ("nested too deeply: the macro 'm' contains itself on",),
     ),
     "a file in itself": (
         '<xacro:include filename="$(dirname)/bad.xacro"/>',
-        ("nested too deeply: the file '$(dirname)/bad.xacro' is nested in itself",),
+        ("nested too deeply: the file '$(dirname)/bad.xacro' contains itself on",),
     ),
     "deep": ("<a>" * 3000 + "</a>" * 3000, ("nested too deeply",)),
     "deep macro": (

@@ -41,7 +41,7 @@ def test_without_the_extra_one_line_says_how_to_install_it() -> None:
     assert done.returncode == 2 and done.stdout == ""
     (line,) = done.stderr.splitlines()
     assert "require cyclonedds and rosbags" in line or "require rosbags and cyclonedds" in line
-    assert line.endswith("to install, use pip install 'onorbit-rs[ros2]'")
+    assert line.endswith("to install them, use pip install 'onorbit-rs[ros2]'")
 
 
 def test_the_command_runs_a_scenario_and_reports_it(capsys: pytest.CaptureFixture[str]) -> None:
@@ -75,8 +75,8 @@ def test_the_domain_is_that_of_the_environment(
     [
         (["--pace", "slow"], "pace is 'slow'; give one of real_time, fast, stepped"),
         (["--network", "wifi"], "network is 'wifi'; give 'loopback' or 'all'"),
-        (["--for", "0"], "the duration is 0.0 s; it must be positive"),
-        (["--for", "nan"], "the duration is nan s; it must be positive"),
+        (["--for", "0"], "the duration is 0.0 s; it must be a positive number"),
+        (["--for", "nan"], "the duration is nan s; it must be a positive number"),
     ],
 )
 def test_wrong_options_are_named(

@@ -84,14 +84,16 @@ def test_an_interrupted_start_leaves_nothing_open(
 
 def test_arguments_that_are_wrong_are_refused_before_anything_is_opened(tmp_path: Path) -> None:
     same: dict[str, Any] = {"log": tmp_path / "a.mcap", "record": str(tmp_path / "." / "a.mcap")}
-    with pytest.raises(InputError, match=r"log and record are the same file, .*a\.mcap; give each its own"):
+    with pytest.raises(
+        InputError, match=r"log and record are the same file, .*a\.mcap; give two different files"
+    ):
         Node(scenario(), domain=DOMAIN, **same)
     assert not list(tmp_path.iterdir())
     with pytest.raises(DtypeError, match=r"is 'humanoid_reach'; give a Simulation, or use Node\.of_scenario"):
         Node("humanoid_reach")  # type: ignore[arg-type]
     with pytest.raises(InputError, match="pace is None; give one of real_time, fast, stepped"):
         Node(scenario(), pace=None)  # type: ignore[arg-type]
-    with pytest.raises(InputError, match="the timeout of wrenches is '1' s; it must be positive"):
+    with pytest.raises(InputError, match="the timeout of wrenches is '1' s; it must be a positive"):
         Node(scenario(), wrench_timeout="1")  # type: ignore[arg-type]
     with pytest.raises(InputError, match="the number of rows to keep is True; it must be an integer"):
         Node(scenario(), keep_rows=True)
@@ -102,7 +104,7 @@ def test_arguments_that_are_wrong_are_refused_before_anything_is_opened(tmp_path
 def test_a_node_that_was_closed_does_not_run() -> None:
     with node_of(scenario(), pace="fast") as one:
         pass
-    with pytest.raises(Ros2Error, match="has ended; create another Node"):
+    with pytest.raises(Ros2Error, match="or was closed; create another Node"):
         one.spin(0.01)
 
 

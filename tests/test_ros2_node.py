@@ -353,10 +353,14 @@ def test_bytes_that_are_not_dds_do_not_disturb_a_node(peer: Peer) -> None:
 
 def test_a_node_runs_once() -> None:
     with node_of(scenario(), pace="fast") as node:
-        with pytest.raises(oo.exceptions.InputError, match="the duration is nan s; it must be positive"):
+        with pytest.raises(
+            oo.exceptions.InputError, match="the duration is nan s; it must be a positive number"
+        ):
             node.spin(float("nan"))
         node.spin(0.01)
-        with pytest.raises(oo.exceptions.Ros2Error, match="has ended; create another Node"):
+        with pytest.raises(
+            oo.exceptions.Ros2Error, match="has already run or was closed; create another Node"
+        ):
             node.spin(0.01)
 
 

@@ -135,7 +135,7 @@ def test_a_domain_whose_participants_are_all_taken_is_named() -> None:
     for port in loopback._ports(DOMAIN):
         taken.append(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
         taken[-1].bind(("127.0.0.1", port))
-    with pytest.raises(oo.exceptions.Ros2Error, match=f"DDS domain {DOMAIN} has no free participant"):
+    with pytest.raises(oo.exceptions.Ros2Error, match=f"DDS domain {DOMAIN} is full"):
         Participant(DOMAIN)
     taken.pop().close()
     Participant(DOMAIN).close()

@@ -46,15 +46,13 @@ def test_a_run_that_does_not_fit_is_refused_before_it_starts(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(memory, "_available_memory", lambda: 2e9)
-    what = (
-        r"records 4000001 rows, about .* but 2 GB are available; give the run a folder \(--out DIR, or out="
-    )
+    what = r"records 4000001 rows, about .* but 2 GB is available; give the run a folder \(--out DIR, or out="
     with pytest.raises(InputError, match=what) as error:
         oo.run("free_tumble", quiet=True, changes=LONG)
     assert error.value.name == "record_every" and error.value.got == 1
     with pytest.warns(UserWarning, match="its trace.npz will have about"):
         memory.check_size(built("free_tumble", LONG), tmp_path)  # the rows are not kept in memory
-    with pytest.raises(InputError, match="but 2 GB are available; do not view the run"):
+    with pytest.raises(InputError, match="but 2 GB is available; do not view the run"):
         memory.check_size(built("free_tumble", LONG), tmp_path, is_viewed=True)
     every = int(str(error.value.expected).removeprefix(">= "))
     fitting = built("free_tumble", LONG | {"simulation.record_every": every})
@@ -69,7 +67,8 @@ def test_a_full_disk_is_noticed_before_the_run(tmp_path: Path, monkeypatch: pyte
     usage = type("Usage", (), {"free": 1e9})
     monkeypatch.setattr(memory.shutil, "disk_usage", lambda path: usage)
     with pytest.raises(
-        InputError, match=r"on the disk of .*, which has 1 GB; free space, or set simulation.record_every to"
+        InputError,
+        match=r"on the disk of .*, where 1 GB is free; free space, or set simulation.record_every to",
     ):
         memory.check_size(built("free_tumble", LONG), tmp_path)
 

@@ -108,7 +108,7 @@ REFUSED: dict[str, tuple[dict[str, Any], type[OnOrbitError], tuple[str, ...]]] =
     "python and joints": (
         one(controller={"kind": "python", "file": "a.py", "class": "A"}, reference=HOLD),
         ScenarioError,
-        ("reference", "controls a tool"),
+        ("reference", "accepts only tool references"),
     ),
 }
 

@@ -197,7 +197,7 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "light without an orbit": (
         LAW + "environment: [radiation_pressure]\n",
         "5: environment[0]",
-        ("radiation pressure requires an orbit",),
+        ("the effect radiation_pressure requires an orbit",),
     ),
     "unknown unit": (
         ROBOT + "simulation: {duration: 5 sec}\n",
@@ -234,7 +234,7 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "drift, a word": (
         ROBOT + "simulation: {duration: 1, rereference_beyond: always}\n",
         "2: simulation.rereference_beyond",
-        ("is not a length", "give a number in m, or", "; or write 'never'"),
+        ("is not a length", "give a number in m, or", ", or 'never'"),
     ),
     "a switch": (
         ROBOT + "simulation: {duration: 1, enforce_limits: perhaps}\n",
@@ -267,7 +267,7 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "a spin beyond all": (
         JOINTS + "initial: {angular_velocity: [1e200, 0, 0]}\n",
         "3: initial",
-        ("angular velocity of the base along x, is 1e200 rad/s", "between -1e9 and 1e9 rad/s"),
+        ("the angular velocity of the base about x, is 1e200 rad/s", "below 1e9 rad/s"),
     ),
     "beyond the speed of light": (
         JOINTS + "initial: {linear_velocity: [0, 4e5 km/s, 0]}\n",

@@ -165,7 +165,7 @@ INVALID: dict[str, tuple[str, str, str]] = {
         "frame: chaser/tol",
         r":13: systems.target.initial.frame: no frame is named 'tol'.*'tool'",
     ),
-    "own frame": ("frame: chaser/tool", "frame: target/handle", r":13: .*relative to each other"),
+    "own frame": ("frame: chaser/tool", "frame: target/handle", r":13: .*form a cycle"),
     "captured frame": (
         "target/handle]",
         "target/handel]",
@@ -190,7 +190,7 @@ INVALID: dict[str, tuple[str, str, str]] = {
     "two conditions": ("after: grasp,", "after: grasp, at: 1,", r":22: .*exactly one of 'at'"),
     "delay alone": ("after: grasp,", "at: 1,", r":22: events\[1\].when.delay: .*requires 'after'"),
     "after": ("after: grasp", "after: grap", r":22: events\[1\].when.after: .*'grap'.*'grasp'"),
-    "after itself": ("after: grasp", "after: let_go", r":22: .*wait for each other: let_go, let_go"),
+    "after itself": ("after: grasp", "after: let_go", r":22: .*form a cycle: let_go, let_go"),
     "release": ("release: grasp", "release: grap", r":23: events\[1\].do.release: .*'grasp'"),
     "release of a release": ("release: grasp", "release: let_go", r":23: .*is not a capture"),
     "same name": ("name: let_go", "name: grasp", r":21: events\[1\].name: two events"),
@@ -280,7 +280,7 @@ def test_a_system_far_from_the_reference_gives_a_warning_with_its_precision() ->
 def test_events_that_wait_for_each_other_are_refused() -> None:
     values = data()
     values["events"][0]["when"] = {"after": "let_go"}
-    with pytest.raises(ScenarioError, match="wait for each other: grasp, let_go, grasp"):
+    with pytest.raises(ScenarioError, match="form a cycle: grasp, let_go, grasp"):
         load(values)
 
 

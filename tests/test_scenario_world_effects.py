@@ -99,6 +99,6 @@ def test_one_surface_for_all_systems_must_be_their_faces() -> None:
     values = data(TEXT)
     values["environment"][0] = {"kind": "drag", "surfaces": {"kind": "cannonball", "area": 2}}
     with pytest.raises(
-        ScenarioError, match=r"environment\[0\].surfaces: cannonball is the surface of one body"
+        ScenarioError, match=r"environment\[0\].surfaces: a surface of kind cannonball belongs to one"
     ):
         load(values)

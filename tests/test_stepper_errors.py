@@ -52,7 +52,7 @@ def test_times_that_cannot_be_reached_are_rejected(t: float, message: str) -> No
         (np.zeros(6), "ShapeError", r"tau has shape \(6,\); expected \(7,\)"),
         (np.zeros((7, 1)), "ShapeError", r"tau has shape \(7, 1\)"),
         ([0.0, 0.0, np.nan, 0.0, 0.0, 0.0, 0.0], "InputError", r"tau\[2\] is NaN; it must be finite"),
-        ({"nothing": 1.0}, "InputError", "tau contains the unknown joint 'nothing'; the joints of robot '"),
+        ({"nothing": 1.0}, "InputError", "tau contains the unknown joint 'nothing' of robot '"),
         ({"right_joint_1": np.inf}, "InputError", "it must be finite"),
         ({"right_joint_1": [1.0, 2.0]}, "ShapeError", "has shape"),
         ({"right_joint_1": "much"}, "DtypeError", "is text"),

@@ -115,7 +115,7 @@ def test_an_error_of_the_viewer_is_a_warning_and_the_run_continues(
 
     monkeypatch.setattr(live, "send_rows", refuse)
     with pytest.warns(
-        UserWarning, match=r"the viewer was closed or failed .gone.; the run continues without it"
+        UserWarning, match=r"the viewer was closed or failed .gone.; the run continues without the viewer"
     ) as caught:
         watched = Watched(tmp_path, built_reach(duration=20.0))
     assert len(caught) == 1 and watched.trace.is_complete

@@ -183,7 +183,10 @@ INVALID: dict[str, tuple[Callable[[], object], str]] = {
         "exactly one",
     ),
     "no condition": (lambda: oo.Capture("grasp", "chaser/tool", "target/base"), "exactly one"),
-    "past": (lambda: world(oo.Capture("grasp", "chaser/tool", "target/base", at=-1.0)), "zero or positive"),
+    "past": (
+        lambda: world(oo.Capture("grasp", "chaser/tool", "target/base", at=-1.0)),
+        "finite and at least 0 s",
+    ),
     "two names": (lambda: oo.World([systems()[0], systems()[0]]), "two systems have the name"),
     "slash": (
         lambda: oo.World([systems()[0], oo.System("a/b", BOX, BOX.neutral(), np.zeros(6))]),

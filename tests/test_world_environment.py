@@ -233,7 +233,7 @@ INVALID: dict[str, tuple[Callable[[], Any], type[Exception], str]] = {
     "twice on the second system": (
         lambda: [oo.Drag(AIR, surfaces={name: oo.Faces()}) for name in ("target/bus", "target")],
         EffectError,
-        "drag is given twice for body 'target/bus'",
+        "the effect 'drag' is given twice for body 'target/bus'",
     ),
 }
 

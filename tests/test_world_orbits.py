@@ -103,7 +103,7 @@ def test_element_sets_are_evaluated_at_the_same_instant() -> None:
     h = 0.5
     before, after = (to_world(first, later, 1000.0 + dt)[0] for dt in (-h, h))
     np.testing.assert_allclose(velocity, (np.array(after) - np.array(before)) / (2 * h), atol=1e-4)
-    with pytest.raises(OrbitError, match=r"epoch of the orbit is 2024-03-01T12:00:00.*give an earth"):
+    with pytest.raises(OrbitError, match=r"epoch of the orbit is 2024-03-01T12:00:00.*give 'earth'"):
         to_world(REFERENCE, first)
 
 
@@ -221,6 +221,6 @@ def test_only_systems_that_lose_digits_give_a_warning() -> None:
     with pytest.raises(UserWarning, match=r"'far' starts 4600000 m .* resolved to 1.0\d*e-9 m; use"):
         far(4.6e6)
     with pytest.raises(
-        UserWarning, match=r"'far' starts 200000 m .* events may connect keep this reference orbit"
+        UserWarning, match=r"'far' starts 200000 m .* systems that may interact keep this reference orbit"
     ):
         far(2e5, grasp)

@@ -172,7 +172,7 @@ def test_files_outside_the_package_are_not_read(tmp_path: Path) -> None:
             if path.startswith("$") and not before:
                 continue
             with pytest.raises(
-                ModelError, match=r"is outside of the package|was not found|does not exist"
+                ModelError, match=r"is in none of the packages|was not found|does not exist"
             ) as caught:
                 expanded(package / "urdf", mass, before)
             assert "package_paths" in str(caught.value)
@@ -182,7 +182,7 @@ def test_files_outside_the_package_are_not_read(tmp_path: Path) -> None:
                 continue
             assert expanded(package / "urdf", mass, before, package_paths=[secret]).mass == 5.0
     (package / "urdf" / "link.yaml").symlink_to(secret / "m.yaml")
-    with pytest.raises(ModelError, match="is outside of the package"):
+    with pytest.raises(ModelError, match="is in none of the packages"):
         expanded(package / "urdf", "${xacro.load_yaml('link.yaml')}")
     (secret / "package.xml").write_text("<package/>")
     found = '<xacro:include filename="$(find secret)/m.xacro"/>'
@@ -234,14 +234,14 @@ def test_macros_that_multiply_are_limited(
     macros = f'<xacro:macro name="m12">{inner}</xacro:macro>' + "".join(
         f'<xacro:macro name="m{i}">{f"<xacro:m{i + 1}/>" * 10}</xacro:macro>' for i in range(12)
     )
-    with pytest.raises(ModelError, match="requires more than 50000 steps"):
+    with pytest.raises(ModelError, match="exceeds the limit of 50000 steps"):
         expanded(tmp_path, "1", macros + "<xacro:m0/>")
 
 
 @needs_xacro
 def test_text_that_doubles_is_limited(tmp_path: Path) -> None:
     twice = "".join(f'<xacro:property name="a{i}" value="${{a{i - 1} + a{i - 1}}}"/>' for i in range(1, 60))
-    with pytest.raises(ModelError, match="a text exceeds the limit of 100000 characters"):
+    with pytest.raises(ModelError, match="exceeds the limit of 100000 characters"):
         expanded(tmp_path, "${a59}", '<xacro:property name="a0" value="ab"/>' + twice)
 
 

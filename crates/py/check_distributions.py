@@ -1,7 +1,8 @@
-"""Builds the wheel and the source distribution into ``dist/`` and tests each in a new environment: ``make wheel``.
+"""Builds the wheel and the source distribution, and tests each in a new environment (``make wheel``).
 
-zig links the wheel against glibc 2.28 (tag ``manylinux_2_28``), so that it installs on Linux of 2018 and later.
-Prints the size of the installation and the time of an import.
+Both are written to ``dist/``. zig links the wheel against glibc 2.28 (tag ``manylinux_2_28``), so that it
+installs on Linux distributions from 2018 on. The script prints the size of the installation and the time of
+an import.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ IMPORT = "import time; began = time.perf_counter(); import onorbit_rs; print(tim
 
 
 def run(*command: object, cwd: Path = ROOT) -> str:
-    """Runs a command; returns what it printed on standard output, and ends the program if it failed."""
+    """Runs a command and returns its standard output; ends the program if the command fails."""
     arguments = [str(argument) for argument in command]
     done = subprocess.run(arguments, cwd=cwd, stdout=subprocess.PIPE, text=True, check=False)
     if done.returncode:
@@ -78,7 +79,7 @@ def check(distribution: Path) -> None:
 
 
 def size(folder: Path) -> int:
-    """Returns the size of all files in a folder, bytes."""
+    """Returns the total size of the files in a folder, bytes; symbolic links do not count."""
     return sum(file.stat().st_size for file in folder.rglob("*") if file.is_file() and not file.is_symlink())
 
 

@@ -1,6 +1,6 @@
 """Writes ``THIRD_PARTY_NOTICES.txt``: the crates linked into the module, with their licences, for the wheel.
 
-Run it with ``make notices`` after a change of ``Cargo.lock``; a test compares.
+Run it with ``make notices`` after a change of ``Cargo.lock``; a test compares the file with this output.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ https://crates.io/crates/NAME/VERSION. Written by crates/py/notices.py.
 
 
 def linked_crates() -> list[dict[str, Any]]:
-    """What ``cargo metadata`` says of each crate that the module links on some target, by name."""
+    """Returns the ``cargo metadata`` entries of the crates that the module links on any target, by name."""
     found: dict[str, dict[str, Any]] = {}
     for target in TARGETS:
         found |= _linked_on(target)
@@ -36,7 +36,10 @@ def linked_crates() -> list[dict[str, Any]]:
 
 
 def _linked_on(target: str) -> dict[str, dict[str, Any]]:
-    """Normal dependencies of the module, without macros, which run in the compiler, and their own."""
+    """Returns the external crates that the module links on a target, by crate id.
+
+    Procedural macros and their dependencies are excluded, because they run in the compiler.
+    """
     command = ["cargo", "metadata", "--locked", "--offline", "--format-version", "1"]
     done = subprocess.run(
         [*command, "--filter-platform", target], cwd=ROOT, capture_output=True, text=True, check=True
@@ -64,7 +67,7 @@ def _is_macro(crate: dict[str, Any]) -> bool:
 
 
 def licence_texts(crate: dict[str, Any]) -> list[str]:
-    """The texts of the licence files in the crate's own folder."""
+    """Returns the texts of the licence files in the folder of a crate; ends the program if there is none."""
     folder = Path(crate["manifest_path"]).parent
     files = sorted(
         file for file in folder.iterdir() if file.is_file() and file.name.lower().startswith(LICENCE_FILES)
@@ -72,12 +75,12 @@ def licence_texts(crate: dict[str, Any]) -> list[str]:
     named = [file for file in folder.iterdir() if file.is_file() and file.name.lower() == "unlicense"]
     texts = [file.read_text(encoding="utf-8") for file in files + named]
     if not texts:
-        raise SystemExit(f"{crate['name']} {crate['version']} brings no licence file: add its text by hand")
+        raise SystemExit(f"{crate['name']} {crate['version']} has no licence file; add its text by hand")
     return ["\n".join(line.rstrip() for line in text.strip().splitlines()) for text in texts]
 
 
 def notices() -> str:
-    """The whole file: a table of crates, then every licence text once."""
+    """Returns the text of the file: a table of the crates, then each licence text once."""
     numbers: dict[str, int] = {}
     texts: list[str] = []
     table: list[str] = []

@@ -12,7 +12,7 @@ class                       built-in               fields: cause
 ``DtypeError``              ``TypeError``          ``name, expected, got``: wrong type, such as text
 ``ModelError``              ``ValueError``         ``link, joint, path``: masses, inertias, loops, bad URDF
 ``FrameError``              ``KeyError``           ``name, kind, known, suggestion``: no such frame or joint
-``OrbitError``              ``ValueError``         ``name, got, expected``: invalid elements or wrong use
+``OrbitError``              ``ValueError``         ``name, got, expected, time, index``: elements or use
 ``ElementSetError``         ``OrbitError``         ``line, column, name``: a TLE or OMM that cannot be read
 ``Sgp4Error``               ``OrbitError``         ``code, time, got``: an error of SGP4, such as decay
 ``PathError``               ``OrbitError``         ``time, start, end``: invalid path, or time outside of it
@@ -20,8 +20,8 @@ class                       built-in               fields: cause
 ``EffectError``             ``ValueError``         ``name, got, expected``: an effect of the environment
 ``GravityError``            ``ValueError``         ``name, got, expected, path, line``: a gravity field
 ``ControlError``            ``ValueError``         ``name, got, expected``: gains, controllers, references
-``WorldError``              ``ValueError``         ``name, got``: a system or an event of a world
-``SimulationError``         ``ArithmeticError``    ``time, q, v, trace``: the run diverged
+``WorldError``              ``ValueError``         ``name, got``: a system, event, brake or contact
+``SimulationError``         ``ArithmeticError``    ``time, q, v, trace, name, got, expected``: diverged
 ``EngineError``             ``ValueError``         ``name, got, expected``: engine missing or wrong setting
 ``CompareError``            ``ValueError``         ``name, got, expected``: two runs that cannot be compared
 ``CheckpointError``         ``ValueError``         ``path``: a checkpoint that cannot be resumed
@@ -199,7 +199,7 @@ class EarthError(OnOrbitError, ValueError):
 
 
 class WorldError(OnOrbitError, ValueError):
-    """Invalid system or event of a world, or an unknown system or event name."""
+    """Invalid system, event, brake or contact of a world, or an unknown name of one of them."""
 
     name: Any = None
     got: Any = None
@@ -249,7 +249,7 @@ class SimulationError(OnOrbitError, ArithmeticError):
 
 
 class EngineError(OnOrbitError, ValueError):
-    """A physics engine is not installed, or does not support a setting."""
+    """A physics engine is not installed, does not support a setting, is already in use, or failed."""
 
     name: Any = None
     got: Any = None
@@ -257,7 +257,7 @@ class EngineError(OnOrbitError, ValueError):
 
 
 class CompareError(OnOrbitError, ValueError):
-    """Runs that cannot be compared: different robots, or no common time."""
+    """Runs of different robots or systems, runs without a common time, or an unknown name in a comparison."""
 
     name: Any = None
     got: Any = None
@@ -352,13 +352,13 @@ class CampaignError(OnOrbitError, RuntimeError):
 
 
 class ViewerError(OnOrbitError, RuntimeError):
-    """The viewer does not start or displays nothing, or a notebook cannot contain it."""
+    """The viewer does not start, a notebook cannot contain it, or a recording cannot be encoded."""
 
     reason: Any = None
 
 
 class Ros2Error(OnOrbitError, RuntimeError):
-    """A package for ROS messages is not installed, a domain cannot be joined, or a node cannot go on."""
+    """A package for ROS messages is not installed, a domain cannot be joined, or a node cannot continue."""
 
     reason: Any = None
 

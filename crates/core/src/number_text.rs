@@ -30,6 +30,16 @@ pub fn unlike(value: f64, others: &[f64]) -> String {
     rounded(value, (DIGITS..17).find(told_apart).unwrap_or(17))
 }
 
+/// Formats a number with all digits that distinguish it from other numbers: `1.0000000000000002`, `1e60`.
+///
+/// An input that is compared exactly with a limit is printed in this form, so that it does not look like the
+/// limit.
+#[must_use]
+pub fn exact(value: f64) -> String {
+    let is_plain = value == 0.0 || !value.is_finite() || (SMALL..LARGE).contains(&value.abs());
+    if is_plain { value.to_string() } else { format!("{value:e}") }
+}
+
 /// Formats several numbers as a list: `[1, 2.5, 3]`.
 #[must_use]
 pub fn list(values: &[f64]) -> String {
@@ -42,6 +52,26 @@ pub fn count(number: usize, one: &str) -> String {
     if number == 1 { format!("1 {one}") } else { format!("{number} {}", plural(one)) }
 }
 
+/// Formats the names of the known objects of a kind, as a clause: `the contacts are: a, b`, `the only contact
+/// is 'a'` or `there are no contacts`. `one` is the kind in the singular.
+#[must_use]
+pub fn names<T: AsRef<str>>(known: &[T], one: &str) -> String {
+    match known {
+        [] => format!("there are no {}", plural(one)),
+        [only] => format!("the only {one} is '{}'", only.as_ref()),
+        _ => {
+            let known: Vec<&str> = known.iter().map(AsRef::as_ref).collect();
+            format!("the {} are: {}", plural(one), known.join(", "))
+        }
+    }
+}
+
+/// Formats several numbers with all digits as a list: `[1, 2.5, 0.30000000000000004]`.
+#[must_use]
+pub fn exact_list(values: &[f64]) -> String {
+    format!("[{}]", values.iter().map(|&value| exact(value)).collect::<Vec<_>>().join(", "))
+}
+
 /// Formats the accepted indices of `count` objects: `joints 0 to 5`, `only joint 0` or `no joints`.
 #[must_use]
 pub fn indices(count: usize, one: &str) -> String {
@@ -49,6 +79,18 @@ pub fn indices(count: usize, one: &str) -> String {
         0 => format!("no {}", plural(one)),
         1 => format!("only {one} 0"),
         _ => format!("{} 0 to {}", plural(one), count - 1),
+    }
+}
+
+/// Formats the accepted indices of `count` objects with the advice to give one of them: `joints 0 to 5; give
+/// one of these indices`.
+#[must_use]
+pub fn choice(count: usize, one: &str) -> String {
+    let known = indices(count, one);
+    match count {
+        0 => format!("{known}, so no index is valid"),
+        1 => format!("{known}; give the index 0"),
+        _ => format!("{known}; give one of these indices"),
     }
 }
 
@@ -78,7 +120,7 @@ fn without_zeros(text: &str) -> &str {
 
 #[cfg(test)]
 mod tests {
-    use super::{count, indices, list, short, unlike};
+    use super::{choice, count, exact, exact_list, indices, list, names, short, unlike};
 
     #[test]
     fn noise_of_rounding_is_not_printed() {
@@ -103,8 +145,15 @@ mod tests {
         }
         assert_eq!((count(1, "number"), count(0, "row")), ("1 number".to_owned(), "0 rows".to_owned()));
         assert_eq!(list(&[1.0, 0.1 + 0.2]), "[1, 0.3]");
+        assert_eq!(exact_list(&[1.0, 0.1 + 0.2]), "[1, 0.30000000000000004]");
+        assert_eq!(names::<&str>(&[], "contact"), "there are no contacts");
+        assert_eq!(names(&["a"], "contact"), "the only contact is 'a'");
+        assert_eq!(names(&["a", "b"], "contact"), "the contacts are: a, b");
         assert_eq!([0, 1, 3].map(|n| indices(n, "joint")), ["no joints", "only joint 0", "joints 0 to 2"]);
         assert_eq!(indices(2, "body"), "bodies 0 to 1");
+        assert_eq!(choice(0, "joint"), "no joints, so no index is valid");
+        assert_eq!(choice(1, "frame"), "only frame 0; give the index 0");
+        assert_eq!(choice(3, "frame"), "frames 0 to 2; give one of these indices");
     }
 
     #[test]
@@ -113,5 +162,9 @@ mod tests {
         assert_eq!(unlike(1.000_002, &[1.0]), "1.000002");
         assert_eq!(unlike(1.0 + f64::EPSILON, &[1.0]), "1.0000000000000002");
         assert_eq!(unlike(0.5, &[1.0, 0.5]), "0.5");
+        assert_eq!(
+            [2.0, 2.000_000_1, -1e-7, 1.5e60, f64::NAN].map(exact),
+            ["2", "2.0000001", "-1e-7", "1.5e60", "NaN"]
+        );
     }
 }

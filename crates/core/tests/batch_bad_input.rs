@@ -148,12 +148,12 @@ fn orbits_refuse_ragged_rows() {
     let orbits: Vec<Arc<dyn Orbit>> = vec![Arc::new(orbit), Arc::new(orbit)];
     let (mut r, mut v) = ([0.0; 6], [0.0; 6]);
     let error = propagate(&orbits, Times::Each(&[0.0, 1.0, 2.0]), &mut r, &mut v, Some(1)).unwrap_err();
-    assert_eq!(error, InputError::Ragged { name: "times", width: 2, got: 3 });
+    assert_eq!(error, InputError::UnevenTimes { orbits: 2, got: 3 });
     // orbits with more instants than rows, and with fewer
     for times in [&[0.0, 1.0, 2.0][..], &[0.0]] {
         let rows = StateRows::new(2, &mut r, &mut v).unwrap();
         let error = orbit.fill(times, rows).unwrap_err();
-        assert_eq!(error, OrbitError::WrongLength { name: "rows", expected: times.len(), got: 2 });
+        assert_eq!(error, OrbitError::WrongRows { expected: times.len(), got: 2 });
     }
 }
 

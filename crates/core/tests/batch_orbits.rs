@@ -110,7 +110,7 @@ fn the_first_orbit_refused_is_named_and_so_is_the_time() {
         Err(InputError::NoThreads)
     );
     let short = propagate(&orbits, Times::Common(&times), &mut r[3..], &mut v, None);
-    assert!(matches!(short, Err(InputError::WrongLength { name: "positions", .. })));
+    assert!(matches!(short, Err(InputError::WrongTotal { name: "positions", .. })));
 }
 
 #[test]

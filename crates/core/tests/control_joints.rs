@@ -241,7 +241,7 @@ fn invalid_controls_are_refused_by_name() {
         ])
     };
     assert!(after(Begin::At(0.0)).contains("'a', which has neither a goal nor an end"));
-    assert!(after(Begin::After(1)).contains("follows itself"));
+    assert!(after(Begin::After(1)).contains("waits for itself"));
     assert!(
         refused(vec![Control { goal: Some(Goal::within(1.0)), ..effort("a", 1.0) }])
             .contains("has no reference")

@@ -90,7 +90,7 @@ fn invalid_instants_are_refused() {
 fn the_error_of_an_epoch_names_the_wrong_part() {
     for (text, part) in [
         ("2024-03-01T12:00:00", "it does not end with a time scale, which is UTC (or Z), TAI, TT or TDB"),
-        ("2024-03-01T12:00:00+01:00", "an offset from UTC is not accepted; convert it to UTC"),
+        ("2024-03-01T12:00:00+01:00", "an offset from UTC is not accepted (convert the time to UTC)"),
         ("2024-03-01 UTC", "is not a date and a time of the form YYYY-MM-DDThh:mm:ss.s"),
         ("1899-03-01T12:00:00 TAI", "the year is 1899 and must be from 1900 to 2099"),
         ("2024-13-01T12:00:00 UTC", "the month is 13 and must be from 1 to 12"),

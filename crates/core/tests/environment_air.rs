@@ -153,10 +153,10 @@ fn errors_of_tables_name_the_line() {
     assert!(refused("DATE,AP_AVG,F10.7_OBS\n").contains("no column F10.7_OBS_CENTER81"));
     let one = |row: &str| refused(&format!("DATE,AP_AVG,F10.7_OBS,F10.7_OBS_CENTER81\n{row}"));
     assert!(one("").contains("no rows"));
-    assert!(one("2023-02-29,4,150,150").contains("line 2: '2023-02-29' is not a date"));
+    assert!(one("2023-02-29,4,150,150").contains("line 2: DATE is '2023-02-29'; expected a date"));
     // the sum of days overflowed
-    assert!(one("2024-03-9223372036854775807,4,150,150").contains("is not a date such as 2024-03-01"));
-    assert!(one("9223372036854775807-03-01,4,150,150").contains("is not a date such as 2024-03-01"));
+    assert!(one("2024-03-9223372036854775807,4,150,150").contains("expected a date such as 2024-03-01"));
+    assert!(one("9223372036854775807-03-01,4,150,150").contains("expected a date such as 2024-03-01"));
     // a truncated download, and CelesTrak's mark of a gap
     assert!(
         one("2023-02-28,4,150,150\n2023-03-01,4,1")

@@ -66,7 +66,8 @@ fn a_wrench_without_an_end_has_one_event() {
 #[test]
 fn invalid_input_is_refused_with_its_values() {
     let push = BodyWrench::new(2, Vector3::x(), Vector3::zeros()).expect("finite");
-    assert_eq!(act(&push, (0.0, 1.0)), Err(EnvironmentError::UnknownBody { body: 2.into(), count: 2 }));
+    let known = "the robot has bodies 0 to 1; give one of these indices".to_owned();
+    assert_eq!(act(&push, (0.0, 1.0)), Err(EnvironmentError::UnknownBody { body: 2.into(), known }));
     for (start, end) in [(2.0, 1.0), (1.0, 1.0), (f64::NAN, 1.0), (0.0, f64::NAN)] {
         assert!(matches!(push.during(start, end), Err(EnvironmentError::EmptyInterval { .. })));
     }

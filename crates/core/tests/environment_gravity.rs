@@ -252,6 +252,7 @@ fn one_wrench_per_body_is_needed() {
         let act = |scene: &Scene<'_>| effect.add_wrenches(scene, &mut two);
         let reference = Some(reference(ORIGIN, MU_EARTH));
         let error = Scene::with((0.0, 1.0), 0.0, &bodies, reference, None, act).expect_err("one too many");
-        assert_eq!(error, EnvironmentError::WrongLength { expected: 1, got: 2 });
+        let [expected, got] = ["1 body of system 0", "2 bodies of system 0"].map(str::to_owned);
+        assert_eq!(error, EnvironmentError::OtherBodies { expected, got });
     }
 }

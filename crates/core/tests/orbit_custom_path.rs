@@ -215,7 +215,9 @@ fn invalid_points_of_a_path_are_refused() {
         ("times[4] holds inf", |p| p.times[4] = f64::INFINITY),
         ("accelerations without velocities", |p| p.velocities = None),
         ("attitudes[1] (x, y, z, w) has norm 2", |p| p.attitudes.as_mut().expect("given")[1] *= 2.0),
-        ("closer in time", |p| p.attitudes.as_mut().expect("given")[4] = Vector4::new(1.0, 0.0, 0.0, 0.0)),
+        ("intermediate points", |p| {
+            p.attitudes.as_mut().expect("given")[4] = Vector4::new(1.0, 0.0, 0.0, 0.0)
+        }),
     ];
     for (says, spoil) in cases {
         let mut points = good.clone();

@@ -38,11 +38,13 @@ fn frames_and_bodies_the_robot_does_not_have() {
         assert!(unknown(*source));
     }
     let error = Surface::from_shapes(&model, bodies, 2.2, Optics::default()).unwrap_err();
-    assert_eq!(error, SurfaceError::UnknownBody { body: bodies.into(), count: bodies });
+    let unknown =
+        |error: &SurfaceError| matches!(error, SurfaceError::UnknownBody { body, .. } if body.body == bodies);
+    assert!(unknown(&error), "{error}");
     let elsewhere = Frame { body: bodies, ..model.frames()[0].clone() };
     let (areas, x) = ([1.0], [[1.0, 0.0, 0.0]]);
     let plates = Surface::plates(&model, &elsewhere, &areas, &x, &x, 2.2, Optics::default());
-    assert_eq!(plates.unwrap_err(), SurfaceError::UnknownBody { body: bodies.into(), count: bodies });
+    assert!(unknown(&plates.unwrap_err()));
 }
 
 #[test]

@@ -221,7 +221,9 @@ fn a_motion_that_no_step_resolves_is_reported() {
     simulation.effects.push(Arc::new(Noise));
     let failure = simulation.run(1.0).unwrap_err();
     assert!(matches!(failure.error, SimulationError::StepTooSmall { .. }), "{failure}");
-    assert!(failure.to_string().contains("increase tolerance") && failure.recording.systems[0].rows() > 0);
+    assert!(
+        failure.to_string().contains("increase the tolerance") && failure.recording.systems[0].rows() > 0
+    );
 }
 
 /// A torque that changes at every evaluation.

@@ -94,12 +94,12 @@ fn absurd_steps_and_states_are_refused_with_their_limit() {
     says(|s| s.time_step = 1e-300, "time_step is 1e-300 s; it must be between 1e-12 and 1e9 s");
     says(
         |s| s.systems[0].v[3] = 1e200,
-        "v[3], angular velocity of the base along x, is 1e200 rad/s; it must lie between -1e9 and",
+        "v[3], the angular velocity of the base about x, is 1e200 rad/s; its magnitude must be below 1e9 rad/s",
     );
-    says(|s| s.systems[0].v[1] = -3e8, "v[1], velocity of the base along y, is -300000000 m/s");
-    says(|s| s.systems[0].v[6] = 1e10, "it must lie between -1e9 and 1e9 rad/s");
-    says(|s| s.systems[0].q[2] = 1e300, "q[2], position of the base along z, is 1e300 m");
-    says(|s| s.systems[0].q[7] = -1e300, "q[7], joint '");
+    says(|s| s.systems[0].v[1] = -3e8, "v[1], the velocity of the base along y, is -300000000 m/s");
+    says(|s| s.systems[0].v[6] = 1e10, "the rate of joint");
+    says(|s| s.systems[0].q[2] = 1e300, "q[2], the position of the base along z, is 1e300 m");
+    says(|s| s.systems[0].q[7] = -1e300, "q[7], the position of joint '");
     let mut fast = sound();
     (fast.systems[0].v[0], fast.time_step) = (1e8, 1e-12);
     fast.check().unwrap(); // control: fast, but accepted
@@ -118,7 +118,8 @@ fn effects_without_what_they_need() {
     let push = BodyWrench::new(8, Vector3::x(), Vector3::zeros()).unwrap();
     let error = refused(|s| s.effects.push(Arc::new(push)));
     let SimulationError::Environment { source, .. } = error else { panic!("{error}") };
-    assert_eq!(source, EnvironmentError::UnknownBody { body: 8.into(), count: 8 });
+    let known = "the robot has bodies 0 to 7; give one of these indices".to_owned();
+    assert_eq!(source, EnvironmentError::UnknownBody { body: 8.into(), known });
 }
 
 #[test]

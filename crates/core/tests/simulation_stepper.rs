@@ -286,7 +286,7 @@ fn bad_input_leaves_the_run_as_it_was() {
         assert!(matches!(stepper.advance(dt), Err(SimulationError::NotPositive { name: "dt", .. })), "{dt}");
     }
     for t in [f64::NAN, f64::INFINITY] {
-        assert!(matches!(stepper.advance_to(t), Err(SimulationError::NotPositive { name: "t", .. })));
+        assert!(matches!(stepper.advance_to(t), Err(SimulationError::TimeNotFinite { .. })));
     }
     for t in [-1.0, 0.0, 0.09] {
         assert!(matches!(stepper.advance_to(t), Err(SimulationError::PastTime { .. })));

@@ -390,7 +390,7 @@ fn elements_that_are_not_urdf_are_ignored_and_named() {
     assert_eq!(said.len(), 2, "{said:?}");
     assert!(said[0].contains(": <gazebo:x> has a prefix that URDF"), "{said:?}");
     assert!(
-        said[0].ends_with("ignored (as are '<drake:joint>'); remove the prefix if it describes the robot"),
+        said[0].ends_with("ignored (also: '<drake:joint>'); remove the prefix if it describes the robot"),
         "{said:?}"
     );
     assert!(

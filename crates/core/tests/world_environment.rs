@@ -94,5 +94,5 @@ fn errors_about_one_of_several_systems_contain_its_name() {
     simulation.effects = vec![Arc::new(force)];
     simulation.time_step = 1e9; // the position overflows
     let refused = simulation.run(1e9).unwrap_err().to_string();
-    assert!(refused.contains("diverged at t = 0 s: the state of 'c' is not finite"), "{refused}");
+    assert!(refused.contains("diverged at t = 0 s: the state or a torque of 'c' is not finite"), "{refused}");
 }

@@ -20,7 +20,8 @@ const ROWS_AT_ONCE: usize = 1 << 14;
 /// State of a run from which :meth:`Simulation.run` and :meth:`Simulation.start` resume with identical bits.
 ///
 /// The checkpoint callback of a run receives checkpoints with the rows since the last checkpoint that it
-/// accepted. A run can be resumed only from a checkpoint with all rows.
+/// accepted. A run can be resumed only from a checkpoint with all rows, by the version of onorbit_rs that
+/// wrote it and with the same instruction set (see :func:`build_info`).
 ///
 /// Parameters
 /// ----------
@@ -30,7 +31,7 @@ const ROWS_AT_ONCE: usize = 1 << 14;
 ///     Array (rows, width) of each column of the trace, by the name of the column and in its unit. In a world
 ///     of several systems, the names are paths such as ``chaser/q``.
 /// wall_s : float
-///     Wall-clock time of the run so far, s.
+///     Wall-clock time of the simulation loop so far, s.
 #[pyclass(name = "Checkpoint", frozen, get_all, module = "onorbit_rs")]
 pub(crate) struct PyCheckpoint {
     /// State of the run without its rows, as JSON.
@@ -263,7 +264,8 @@ impl CheckpointCallback {
     }
 
     /// Passes a checkpoint to the callback. If a controller cannot be saved, a warning is issued and the run
-    /// continues without checkpoints.
+    /// continues without checkpoints. If the callback returns False, the next checkpoint contains the same
+    /// rows again.
     pub(crate) fn save(&mut self, py: Python<'_>, stepper: &Stepper<'_>, wall_s: f64) -> PyResult<()> {
         let Some(to) = &self.to else { return Ok(()) };
         let checkpoint = match checkpoint_of(py, stepper, &self.names, &self.rows, wall_s) {

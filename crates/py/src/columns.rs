@@ -27,8 +27,8 @@ pub(crate) fn part_of<'py>(
 /// name : str
 ///     Name of the attribute of the trace that contains the quantity.
 /// path : str
-///     Name in ``trace.npz`` and in a checkpoint; ``*`` stands for the name of a control, of an effect or of
-///     a contact.
+///     Name in ``trace.npz`` and in a checkpoint; ``*`` stands for the name of a control, of an effect, of a
+///     contact or of a loop.
 /// shape : tuple of str and int
 ///     Length of each axis: a number, or ``T`` for the rows, ``nq``, ``nv``, ``n`` for the joints,
 ///     ``bodies``, ``k`` for the components of a tracking error, or ``K`` for the events.
@@ -54,8 +54,8 @@ impl PyColumn {
         self.0.name
     }
 
-    /// Name in ``trace.npz`` and in a checkpoint; ``*`` stands for the name of a control, of an effect or of
-    /// a contact.
+    /// Name in ``trace.npz`` and in a checkpoint; ``*`` stands for the name of a control, of an effect, of a
+    /// contact or of a loop.
     #[getter]
     fn path(&self) -> &'static str {
         self.0.path

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Environment of a run, as an external engine evaluates it during a step.
+/// Function with which an external engine computes the wrenches of the environment during a step.
 ///
 /// ``wrenches(t, q, v)`` returns an array (bodies, 6) for a time ``t``, s, within the current step and the
 /// state ``q``, ``v`` of all systems. Each row contains the force on a body, N, which acts at its centre of
@@ -86,11 +86,11 @@ impl PythonEngine {
         let (nq, nv) = (models().map(|model| model.nq()).sum(), models().map(|model| model.nv()).sum());
         let sizes = [nq, nv, models().map(|model| model.nodes().len()).sum()];
         let contacts = match engine.getattr_opt("contacts")? {
-            Some(names) => names_in(&names, "the contacts of the engine", "names of contacts", "touch")?,
+            Some(names) => names_in(&names, "the engine's attribute contacts", "names of contacts", "touch")?,
             None => Vec::new(),
         };
         let loops = match engine.getattr_opt("loops")? {
-            Some(names) => names_in(&names, "the loops of the engine", "names of loops", "closing")?,
+            Some(names) => names_in(&names, "the engine's attribute loops", "names of loops", "closing")?,
             None => Vec::new(),
         };
         let supports_brakes = match engine.getattr_opt("supports_brakes")? {
@@ -192,7 +192,7 @@ fn described<'py>(py: Python<'py>, weld: &BodyWeld) -> Described<'py> {
 /// Reads an array (contacts, 14): force (N), moment (N m) and power (W) of each contact at the start of the
 /// step, then the integrals of these seven numbers over the step. The moment at the start is not used.
 fn read_contacts(output: &mut StepOutput, value: &Bound<'_, PyAny>) -> PyResult<()> {
-    let name = "the contacts that the engine returned";
+    let name = "the array of contacts that the engine returned";
     let (rows, n) = (Input::new(value, name)?, output.contacts.len());
     if rows.shape() != [n, 14] {
         return Err(wrong_shape(value.py(), name, &format!("({n}, 14)"), rows.shape()));
@@ -207,9 +207,9 @@ fn read_contacts(output: &mut StepOutput, value: &Bound<'_, PyAny>) -> PyResult<
     Ok(())
 }
 
-/// Reads six arrays of a step of a world. For each system: impulse (N s and N m s), work (J), loss (J), and
-/// impulse and work of the connections. For the world: the time integral of the moment about the common
-/// centre of mass, N m s.
+/// Reads six arrays of a step of a world. For each system: impulse (N s and N m s), work (J), dissipated
+/// energy (J), and impulse and work of the connections. For the world: the time integral of the moment about
+/// the common centre of mass, N m s.
 fn read_exchange(output: &mut StepOutput, values: [&Bound<'_, PyAny>; 6]) -> PyResult<()> {
     let [impulse, work, loss, weld_impulse, weld_work, orbital] = values;
     let n = output.systems.len();
@@ -227,7 +227,7 @@ fn read_exchange(output: &mut StepOutput, values: [&Bound<'_, PyAny>; 6]) -> PyR
     }
     let scalars = |value, name| vector(value, name, n);
     let work = scalars(work, "the work that the engine returned")?;
-    let loss = scalars(loss, "the loss that the engine returned")?;
+    let loss = scalars(loss, "the dissipated energy that the engine returned")?;
     let weld_work = scalars(weld_work, "the work of the connections that the engine returned")?;
     for (k, done) in output.systems.iter_mut().enumerate() {
         (done.work, done.dissipated) = (work.data()[k], loss.data()[k]);

@@ -87,7 +87,9 @@ fn vector(py: Python<'_>, v: Vec3<f64>) -> Bound<'_, PyArrayDyn<f64>> {
 /// ModelError
 ///     If a link has no collision shape, or an invalid one, such as a mesh file that does not exist.
 /// InputError
-///     If ``a`` and ``b`` are the same link, or the configuration of a system is missing or invalid.
+///     If ``a`` and ``b`` are the same link, the configuration of a system is missing or invalid, or the
+///     distance is not available: between two half-spaces, and if the middle circle of a torus intersects
+///     the other shape.
 /// ShapeError, DtypeError
 ///     If a configuration has the wrong shape, or an argument has the wrong type.
 /// ConvergenceError

@@ -43,8 +43,8 @@ pub(crate) fn batch<R: Send>(
     interruptible(py, &stop, || work(Threads { count, stop: Some(&stop) }))
 }
 
-/// Runs `work` on a separate thread. A Ctrl-C is raised immediately; `work` is then abandoned and finishes in
-/// the background.
+/// Runs `work` on a separate thread. A Ctrl-C is raised within [`PACE`]; `work` is then abandoned and
+/// finishes in the background.
 ///
 /// This function is for work that cannot be stopped, such as parsing a file or computing a certificate.
 pub(crate) fn abandonable<R: Send + 'static>(

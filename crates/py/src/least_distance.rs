@@ -36,7 +36,8 @@ type Rows<'py> = PyReadonlyArrayDyn<'py, f64>;
 /// Raises
 /// ------
 /// InputError
-///     If no pair is permitted, or the distance of a pair is not available.
+///     If no pair is permitted, or the distance of a pair is not available: between two half-spaces, and if
+///     the middle circle of a torus intersects the other shape.
 /// ModelError
 ///     If a link has no collision shape, or an invalid one.
 /// FrameError

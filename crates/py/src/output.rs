@@ -35,12 +35,17 @@ impl<'py> Output<'py> {
             return Err(refuse("ShapeError", &format!("of shape {}", shape_text(array.shape()))));
         }
         if !array.is_c_contiguous() || !array.is_aligned() {
-            return Err(refuse("ShapeError", "not contiguous"));
+            return Err(refuse("ShapeError", "not contiguous and aligned"));
         }
         match array.try_readwrite() {
             Ok(borrowed) => Ok(Self { array: array.clone(), borrowed: Some(borrowed) }),
             Err(numpy::BorrowError::NotWriteable) => Err(refuse("InputError", "read-only")),
-            Err(_) => Err(refuse("InputError", "in use as an input, as another output or by another call")),
+            Err(_) => {
+                let message = format!(
+                    "{name} is in use as an input, as another output or by another call; use a separate array"
+                );
+                Err(raise(value.py(), "InputError", &message, &fields!(value.py(), "name": name)))
+            }
         }
     }
 

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 
 /// Recorded forces of a closed loop, with one row for each of the ``T`` rows of the trace.
 ///
-/// While a loop that a capture closes is not closed, its rows are zero.
+/// The rows of a loop that a capture closes are zero before the capture and after its release.
 #[pyclass(name = "LoopTrace", frozen, module = "onorbit_rs")]
 pub(crate) struct PyLoopTrace {
     /// Array (T, 11) with all quantities, in the order of ``onorbit_rs.COLUMNS["loops"].parts``.

@@ -125,8 +125,8 @@ impl Runs {
         }
     }
 
-    /// Issues a warning for each control of run `number` that follows a frame to which a capture has rigidly
-    /// connected the control's own frame, and for each singular loop.
+    /// Issues one warning for each control of run `number` that follows a frame to which a capture has
+    /// rigidly connected the control's own frame, and one for each singular loop.
     pub(crate) fn warn(&mut self, py: Python<'_>, number: u64) -> PyResult<()> {
         let all = self.with(number, |stepper| stepper.attached_controls()).unwrap_or_default();
         for new in all.into_iter().filter(|attached| !self.warned.contains(attached)).collect::<Vec<_>>() {
@@ -143,8 +143,8 @@ impl Runs {
         self.warn_of_singular_loops(py, number)
     }
 
-    /// Issues a warning for each closed loop and mimic joint of run `number` whose constraints became
-    /// dependent.
+    /// Issues one warning for each closed loop and mimic joint of run `number` whose constraints became
+    /// linearly dependent.
     fn warn_of_singular_loops(&mut self, py: Python<'_>, number: u64) -> PyResult<()> {
         let all = self.with(number, |stepper| stepper.singular_loops()).unwrap_or_default();
         for new in all.into_iter().filter(|one| !self.singular.contains(one)).collect::<Vec<_>>() {

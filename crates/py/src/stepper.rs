@@ -90,7 +90,8 @@ impl PyStepper {
     /// Raises
     /// ------
     /// InputError
-    ///     If ``t`` is not finite, before the current time, or after the planned end; the run is unchanged.
+    ///     If ``t`` is not finite, before the current time, or after the planned end, or if ``wall_s`` is
+    ///     negative or not finite; the run is unchanged.
     /// RunInterrupted
     ///     At Ctrl-C, before the requested time; its attribute ``trace`` contains the rows so far, and the
     ///     run can be advanced further.
@@ -121,7 +122,7 @@ impl PyStepper {
     /// InputError
     ///     If a torque is not finite, or a name is not that of a joint.
     /// ControlError
-    ///     If an active controller drives one of the joints.
+    ///     If a torque is given for a joint that has an active controller.
     fn command(&self, tau: &Bound<'_, PyAny>) -> PyResult<()> {
         self.command_system(self.only("command")?, tau)
     }
@@ -207,10 +208,10 @@ impl PyStepper {
         self.send_trajectory_to(py, system, control, (start, times, positions), [velocities, accelerations])
     }
 
-    /// Apply a wrench to a body from the current time until the next wrench on the same body.
+    /// Apply a wrench to a link or frame from the current time until the next wrench on it.
     ///
-    /// The current time becomes the end of a step. With ``record_wrenches``, the wrench is
-    /// ``trace.wrenches["wrench_command"]`` in runs with an :class:`External` controller.
+    /// The current time becomes the end of a step. With ``record_wrenches``, runs with an :class:`External`
+    /// controller record the wrench in ``trace.wrenches["wrench_command"]``.
     ///
     /// Parameters
     /// ----------
@@ -226,7 +227,8 @@ impl PyStepper {
     /// Raises
     /// ------
     /// FrameError, InputError, ShapeError, EngineError
-    ///     If there is no such body, a number is not finite, or the engine is external; the run is unchanged.
+    ///     If there is no such body, ``frame`` is unknown, a vector is not finite or not (3,), or the engine
+    ///     is external; the run is unchanged.
     #[pyo3(signature = (body, force=None, torque=None, frame="world"))]
     fn wrench(
         &self,
@@ -246,7 +248,8 @@ impl PyStepper {
         self.external_of(py, self.only("external")?)
     }
 
-    /// Quantity that each control in :attr:`external` tracks: ``position``, ``velocity`` or ``effort``.
+    /// Quantity that the gains of each control in :attr:`external` track, by the name of the control:
+    /// ``position``, ``velocity`` or, without gains, ``effort``.
     #[getter]
     fn interfaces(&self, py: Python<'_>) -> PyResult<Py<PyDict>> {
         self.interfaces_of(py, self.only("interfaces")?)
@@ -332,6 +335,8 @@ impl PyStepper {
     /// ------
     /// ControlError
     ///     If the state of a Python controller cannot be saved; the run is unchanged.
+    /// InputError, WorldError
+    ///     If ``since`` is invalid or names an unknown system.
     #[pyo3(signature = (since=Since::Every(0)), text_signature = "($self, since=0)")]
     fn checkpoint(&self, py: Python<'_>, since: Since) -> PyResult<PyCheckpoint> {
         let wall_s = self.run.lock(py)?.wall_s;

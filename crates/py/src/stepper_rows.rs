@@ -48,7 +48,7 @@ impl PyStepper {
         Ok(columns.unbind())
     }
 
-    /// Return the columns of a world, as those of :class:`WorldTrace`, in an interval of time.
+    /// Return the momentum and energy of all systems in an interval of time, as in :class:`WorldTrace`.
     ///
     /// Parameters
     /// ----------

@@ -3,6 +3,7 @@
 use crate::arrays::{Input, wrong_shape};
 use crate::errors::{fields, raise};
 use onorbit_core::model::Model;
+use onorbit_core::number_text::names;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -23,9 +24,9 @@ pub(crate) fn torques(model: &Model, tau: &Bound<'_, PyAny>) -> PyResult<Vec<Opt
         let name = name.str()?.to_string();
         let Ok(joint) = model.joint(&name) else {
             let message = format!(
-                "tau contains the unknown joint '{name}'; the joints of robot '{}' are {}",
+                "tau contains the unknown joint '{name}' of robot '{}'; {}",
                 model.name(),
-                model.joint_names().collect::<Vec<_>>().join(", ")
+                names(&model.joint_names().collect::<Vec<_>>(), "joint")
             );
             return Err(raise(py, "InputError", &message, &fields!(py, "name": "tau", "got": name)));
         };

@@ -111,7 +111,8 @@ macro_rules! getters {
                 Ok(checks.iter().map(|check| (check.name, check.value, check.gate, check.passed())).collect())
             }
 
-            /// Return the names of the joints that exceed their position limits in any row.
+            /// Return the names of the joints that exceed their position limits in any row by more than 1e-9
+            /// rad or m.
             ///
             /// Returns
             /// -------
@@ -145,8 +146,8 @@ macro_rules! getters {
                 Ok(all)
             }
 
-            /// Distances and forces of the contacts whose first side is this system, :class:`ContactTrace` by
-            /// the name of the contact.
+            /// Distances and forces of the contacts whose first side is this system: one
+            /// :class:`ContactTrace` by the name of each contact.
             #[getter]
             fn contacts<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
                 let (all, row) = (PyDict::new(this.py()), CONTACTS.row_shape(&this.get().model));
@@ -157,8 +158,8 @@ macro_rules! getters {
                 Ok(all)
             }
 
-            /// Forces of the closed loops whose first frame belongs to the system, :class:`LoopTrace` by the
-            /// name of the loop or of the capture that closes it.
+            /// Forces of the closed loops whose first frame belongs to the system: one :class:`LoopTrace` by
+            /// the name of each loop, or of the capture that closes it.
             #[getter]
             fn loops<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
                 let (all, row) = (PyDict::new(this.py()), LOOPS.row_shape(&this.get().model));

@@ -42,7 +42,7 @@ class Outcome:
     values: dict[str, Any]
     """Dispersed values, by name."""
     numbers: dict[str, Any]
-    """Numbers, truth values and outcomes of the summary, by name."""
+    """Numbers, truth values and texts of results in the summary, by name."""
     columns: dict[str, NDArray[np.float64]] = field(default_factory=dict)
     """Columns of the trace that the campaign keeps, by name."""
 

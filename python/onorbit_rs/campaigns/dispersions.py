@@ -91,7 +91,8 @@ class FactorDispersion(Dispersion):
     """Dispersion that multiplies all components of a vector or an inertia by one factor.
 
     A positive factor preserves the direction of a vector, and the principal axes of an inertia and the
-    triangle inequality of its principal moments. Mass and centre of mass do not change.
+    triangle inequality of its principal moments. The mass and the centre of mass of a link whose inertia is
+    scaled do not change.
     """
 
     nominal: Any
@@ -113,7 +114,7 @@ class DirectionDispersion(Dispersion):
 
     @property
     def draws(self) -> int:
-        """Three per case: for the magnitude, and for the height and the longitude of the direction."""
+        """Three random numbers per case: for the magnitude, and the height and longitude of the direction."""
         return 3
 
     @property
@@ -148,7 +149,7 @@ class RotationDispersion(Dispersion):
 
     @property
     def draws(self) -> int:
-        """Three per case: for the components of the rotation vector, or for its magnitude and direction."""
+        """Three random numbers per case: components of a rotation vector, or its magnitude and direction."""
         return 3
 
     def apply(self, data: dict[str, Any], us: Sequence[float]) -> tuple[Any, ...]:

@@ -9,7 +9,8 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Field, PlainSerializer, PlainValidator, model_validator
 
-from onorbit_rs.scenario.errors import invalid
+from onorbit_rs.common.numbers import shortest
+from onorbit_rs.scenario.errors import invalid, shortened
 from onorbit_rs.scenario.part import Part
 from onorbit_rs.scenario.units import split_quantity
 
@@ -34,7 +35,7 @@ class Amount(float):
 
 
 def amount(value: Any) -> Amount:
-    """Convert a number, or a text with a unit of any dimension, to SI units; raises QuantityError."""
+    """Convert a number, or text with a unit of any dimension, to SI; raise QuantityError for other values."""
     if isinstance(value, Amount):
         return value
     number, unit = split_quantity(value)
@@ -71,7 +72,8 @@ class Distribution(Part):
     def _is_mapping(cls, value: Any) -> Any:
         if not isinstance(value, dict) and not isinstance(value, Part):
             raise invalid(
-                "must be a distribution: {uniform: [a, b]}, {normal: [mean, sigma]} or {choice: [...]}"
+                "must be a distribution {uniform: [a, b]}, {normal: [mean, standard deviation]} or "
+                f"{{choice: [...]}}, not {shortened(value)}"
             )
         return value
 
@@ -87,13 +89,15 @@ class Distribution(Part):
             pair = getattr(self, name)
             if pair is not None and not pair[0] < pair[1]:
                 shown = ", ".join(bound.written for bound in pair)
-                raise invalid(f"the bounds of '{name}' are [{shown}]; the first must be smaller")
+                raise invalid(
+                    f"the bounds of '{name}' are [{shown}]; the first must be smaller than the second"
+                )
         if self.normal is not None and self.normal[1] <= 0.0:
             raise invalid(f"the standard deviation is {self.normal[1].written}; it must be above zero")
         if self.within is not None and self._probability < LEAST_PROBABILITY:
             raise invalid(
-                f"the interval 'within' has a probability of {self._probability:.1e}, below "
-                f"{LEAST_PROBABILITY:g}; give bounds near the mean"
+                f"the probability of the interval 'within' is {shortest(self._probability)}; it must be at "
+                f"least {LEAST_PROBABILITY:g}; give a wider interval, or one nearer to the mean"
             )
         return self
 
@@ -124,7 +128,7 @@ class Distribution(Part):
 
     @property
     def bounds(self) -> Pair | None:
-        """Least and largest value; None without bounds."""
+        """Least and largest value of ``uniform`` or ``within``; None if neither is given."""
         return self.uniform or self.within
 
     def value(self, u: float) -> float:
@@ -167,13 +171,16 @@ class Change(Part):
     vector: Literal["components", "direction"] = "components"
     """How a vector is drawn: ``components`` draws each component on its own, in the axes of the entry.
     ``direction`` draws a magnitude and a uniformly distributed direction for ``set`` and ``add``, and one
-    factor of the whole vector for ``scale``."""
+    factor for the whole vector for ``scale``."""
 
     @model_validator(mode="before")
     @classmethod
     def _is_mapping(cls, value: Any) -> Any:
         if not isinstance(value, dict) and not isinstance(value, Part):
-            raise invalid("must be a mapping with 'set', 'add' or 'scale', such as {add: {normal: [0, 0.1]}}")
+            raise invalid(
+                "must be a mapping with 'set', 'add' or 'scale', such as {add: {normal: [0, 0.1]}}, not "
+                f"{shortened(value)}"
+            )
         for name in ("uniform", "normal", "choice"):
             if isinstance(value, dict) and name in value:
                 raise invalid(

@@ -19,17 +19,17 @@ MOST_CASES = 10**7
 
 
 class Keep(Part):
-    """Results that are kept of every case besides its summary."""
+    """Results of every case that are kept in addition to its summary."""
 
     synonyms: ClassVar = {"rate": "every", "period": "every", "failed": "failures"}
 
     columns: list[str] = Field(default_factory=list)
     """Columns of the trace, as named in ``trace.npz``; they are written to ``columns.parquet``."""
     every: Annotated[Time, Positive] | None = None
-    """Interval between two rows of ``columns``. Default: every recorded row."""
+    """Interval between two rows of ``columns``, s. Default: every recorded row."""
     failures: Literal["summary", "full"] = "summary"
-    """``full`` also writes the folder of an ordinary run, with figures and recording, for every case without
-    success."""
+    """``summary``, or ``full``, which also writes the folder of an ordinary run, with figures and recording,
+    for every case without success."""
 
     @model_validator(mode="before")
     @classmethod
@@ -104,17 +104,17 @@ class Campaign(Part):
     }  # fmt: skip
 
     scenario: Annotated[Any, BeforeValidator(_source)]
-    """A bundled name, a YAML file relative to this file, or a whole scenario."""
+    """Nominal scenario: a bundled name, a YAML file relative to the campaign file, or its whole content."""
     cases: Whole = Field(ge=1, le=MOST_CASES)
     """Number of cases."""
     seed: Whole = Field(default=0, ge=0, le=2**63)
     """Seed of the random numbers."""
     sampling: Sampling = "random"
-    """``random``, ``latin_hypercube`` or ``sobol``."""
+    """Method that draws the random numbers: ``random``, ``latin_hypercube`` or ``sobol``."""
     vary: Annotated[dict[str, Change], Field(min_length=1)]
     """Changes of entries of the scenario; the keys are the paths of the entries."""
     keep: Keep = Field(default_factory=Keep)
-    """``summary``, or a mapping with further results to keep of every case."""
+    """``summary``, or a mapping with further results to keep for every case."""
     success: dict[str, Condition] = Field(default_factory=dict)
     """Conditions on columns of ``cases.parquet``, by the name of the column. A case is a success if it is
     complete, its certificate passed, and all conditions hold."""
@@ -134,7 +134,7 @@ class CampaignDocument(Part):
 
     @classmethod
     def checked(cls, data: dict[str, Any], file: Path | None, lines: Lines) -> CampaignDocument:
-        """Return a validated campaign; raises ScenarioError with the place of an invalid entry."""
+        """Return a validated campaign; raise ScenarioError with the location of an invalid entry."""
         named = data if file is None or "name" in data else data | {"name": file.stem}
         try:
             document = cls.model_validate(named)

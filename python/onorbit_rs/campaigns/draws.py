@@ -1,4 +1,4 @@
-"""Random numbers of a campaign: functions of seed, case and path, independent of the order of execution."""
+"""Random numbers of a campaign, which do not depend on the order in which the cases run."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ _tables: dict[int, NDArray[np.uint32]] = {}
 
 
 def _sobol(cases: int, dimensions: int) -> NDArray[np.uint32]:
-    """Return the first points of the Sobol sequence without scrambling, (cases, n) with n >= dimensions."""
+    """Return the first points of the unscrambled Sobol sequence times 2³², (cases, n), n >= dimensions."""
     table = _tables.get(cases)
     if table is None or table.shape[1] < dimensions:
         table = _tables[cases] = _sobol_points(
@@ -110,7 +110,7 @@ def check_sampling(sampling: Sampling, dimensions: int) -> None:
 
 
 def _qmc() -> Any:
-    """Return SciPy's module of quasi-random sequences; raises InputError if SciPy is not installed."""
+    """Return SciPy's module of quasi-random sequences; raise InputError if SciPy is not installed."""
     try:
         from scipy.stats import qmc
     except ImportError:

@@ -77,11 +77,15 @@ class Expander:
             given = [place for place in places if place.value is not None]
             if not given:
                 raise self.error(
-                    path, "no entry that matches has a value in the scenario; name one entry and use 'set'"
+                    path,
+                    "no matching entry has a value in the scenario; give the path of one entry, without '*', "
+                    "and use 'set'",
                 )
             return given
         if places[0].value is None and change.how != "set" and not places[0].is_attitude:
-            raise self.error(path, f"the scenario has no value that '{change.how}' can change; use 'set'")
+            raise self.error(
+                path, f"the entry has no value in the scenario that '{change.how}' could change; use 'set'"
+            )
         return places
 
     def _check_apart(self, found: list[tuple[Location, str]]) -> None:
@@ -123,16 +127,30 @@ class Expander:
         """Yield one dispersion per component, or one for the whole vector."""
         value = place.value
         entries = list(value.items() if isinstance(value, dict) else enumerate(value))
-        if not entries or not all(_is_number(entry) for _, entry in entries):
-            raise self.error(path, "is not a vector of numbers; vary one of its entries")
+        if not entries:
+            raise self.error(
+                path, "is empty; give values in the scenario, or vary it by 'set: {choice: [...]}'"
+            )
+        if not all(_is_number(entry) for _, entry in entries):
+            raise self.error(
+                path,
+                f"is {shortened(value)}, not a vector of numbers; vary one of its entries, or vary it by "
+                "'set: {choice: [...]}'",
+            )
         leaves = [place.inner(step, entry) for step, entry in entries]
         if change.vector == "components":
             for leaf in leaves:
                 yield self._number(path, leaf, change)
             return
-        if isinstance(value, dict) or (len(value) != 3 and change.how != "scale"):
+        if isinstance(value, dict):
             raise self.error(
-                path, "'vector: direction' applies only to a list of three components; omit 'vector'"
+                path, "'vector: direction' applies only to lists, but the entry is a mapping; omit 'vector'"
+            )
+        if len(value) != 3 and change.how != "scale":
+            raise self.error(
+                path,
+                f"'vector: direction' with '{change.how}' requires three components, but the entry has "
+                f"{len(value)}; omit 'vector', or use 'scale'",
             )
         names = tuple(leaf.name for leaf in leaves)
         distribution = self._numeric(path, change)
@@ -156,7 +174,9 @@ class Expander:
         """Return the dispersion of an inertia by one factor, which keeps the inertia physical."""
         if change.how != "scale":
             raise self.error(
-                path, f"an inertia is varied by 'scale', which keeps it physical, not by '{change.how}'"
+                path,
+                f"{_without_choice(change)} does not apply to an inertia; use 'scale', which keeps it "
+                "physical, or 'set' with 'choice'",
             )
         distribution = self._numeric(path, change)
         for bound in distribution.choice or distribution.bounds or ():
@@ -167,7 +187,9 @@ class Expander:
     def _attitude(self, path: str, place: Place, change: Change) -> Dispersion:
         if change.how != "add":
             raise self.error(
-                path, "an attitude is varied by 'add', with an angle per body axis, or by 'set' with 'choice'"
+                path,
+                f"{_without_choice(change)} does not apply to an attitude; use 'add', with an angle about "
+                "each body axis, or 'set' with 'choice'",
             )
         distribution = self._numeric(path, change)
         for amount_ in distribution.amounts:
@@ -207,7 +229,7 @@ class Expander:
             self._validated(path, place, number.written, is_about=_is_about_units)
 
     def _valid(self, path: str, place: Place, value: Any) -> Any:
-        """Return a value of an entry in SI after validating it; raises ScenarioError."""
+        """Return a value of an entry in SI after validating it; raise ScenarioError if it is invalid."""
         found = self._validated(path, place, value)
         for step in place.inside:
             found = found[step]
@@ -218,8 +240,8 @@ class Expander:
     ) -> Any:
         """Validate the field of an entry with a new value of the entry; return the plain value of the field.
 
-        A ValidationError is ignored unless ``is_about`` returns True for one of its causes; the value that
-        is returned is then not validated.
+        If ``is_about`` returns False for all causes of a ValidationError, the error is ignored, and the value
+        is returned without validation.
         """
         owner, candidate = place.owner, place.candidate(value)
         assert owner is not None
@@ -238,6 +260,11 @@ class Expander:
         except OnOrbitError as error:
             raise self.error(path, str(error)) from None
         return fields.dump_python(found, mode="json", by_alias=True, exclude_none=True)
+
+
+def _without_choice(change: Change) -> str:
+    """Return the name of a change for messages about entries for which only ``choice`` can be set."""
+    return "'set' without 'choice'" if change.how == "set" else f"'{change.how}'"
 
 
 def _is_about_units(error: Exception) -> bool:

@@ -65,7 +65,7 @@ def _values(mass: float, com: Floats, inertia: Floats) -> LinkValues:
 
 
 def _share(model: Model, body: Body, link: str) -> LinkValues:
-    """Return the values of a link that shares a body.
+    """Return mass, centre of mass and inertia of a link that shares its body with other links.
 
     With the reference values `m₀ = 1 kg`, `c₀ = 0` and `I₀ = 1` of the link in place of `m`, `c` and `I`, the
     body changes its mass by `m₀ − m`, its first moment of mass by `R (m₀ c₀ − m c) + (m₀ − m) p` and its

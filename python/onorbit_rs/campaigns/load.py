@@ -36,10 +36,13 @@ def load_campaign(
     ------
     NotFoundError
         If ``source`` is neither a bundled name nor a file, or is the name of a bundled scenario.
+    ReadError
+        If the file is not readable.
     DtypeError
         If ``source`` has another type.
     ScenarioError
-        If the campaign or its scenario is invalid; has the attributes ``file``, ``path`` and ``line``.
+        If the campaign or its scenario is invalid; the error has the attributes ``file``, ``path`` and
+        ``line``.
     """
     if isinstance(source, Mapping):
         return _checked(dict(source), None, {}, cases)
@@ -51,8 +54,8 @@ def load_campaign(
         )  # fmt: skip
     if os.fspath(source) in SCENARIOS.names() and not Path(source).exists():
         raise NotFoundError(
-            f"{source!r} is a scenario, not a campaign; run it with 'onorbit run', or write a campaign file: "
-            f"{{campaign: {{scenario: {source}, cases: ..., vary: ...}}}}",
+            f"{os.fspath(source)!r} is a scenario, not a campaign; run it with 'onorbit run', or write a "
+            f"campaign file: {{campaign: {{scenario: {source}, cases: ..., vary: ...}}}}",
             path=str(source), kind="campaign",
         )  # fmt: skip
     file = CAMPAIGNS.locate(source)

@@ -59,7 +59,7 @@ def _check_columns(keep: Keep, trace: Any) -> None:
     known = list(columns_of(trace))
     for name in keep.columns:
         if name not in known:
-            hint = did_you_mean(name, known) or "; trace.npz of a run lists the columns"
+            hint = did_you_mean(name, known) or "; give the name of an array in trace.npz of a run"
             raise InputError(
                 f"campaign.keep.columns: the trace has no column {name!r}{hint}", name="columns", got=name
             )

@@ -23,7 +23,7 @@ EVENT_NUMBERS = (
 
 
 def numbers_of(summary: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the numbers, truth values and outcomes of a summary by name.
+    """Return the numbers, truth values and texts of results in a summary, by name.
 
     Entries of a system begin with ``systems.NAME.``, those of checks, contacts and events with
     ``certificate.NAME.``, ``contacts.NAME.`` and ``events.NAME.``. Of events with the same name, the first

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from types import ModuleType
 
 LOCAL = "local"
-"""Address of a cluster that is started on this machine, for the campaign only."""
+"""Address that stands for a cluster on this machine, which is started for the campaign only."""
 _SETTINGS = {
     "distributed.worker.profile.enabled": False,  # samples the stacks of Python a hundred times a second
     # replaces the default MALLOC_TRIM_THRESHOLD_, with which every case releases and maps memory again
@@ -47,19 +47,22 @@ _RETRY_S = 0.2
 """Wall-clock time after which a transfer that was cut off is tried again, s."""
 _LONGEST_RESULT_S = 60.0
 _BATCH_S = 1.0
-"""Wall-clock time of the cases of one task, s."""
+"""Intended wall-clock time of the cases of one task, s."""
 _AHEAD = 1
 """Number of tasks in the queue of every thread of the cluster, so that no thread is idle."""
 
 
 def run_cases(plan: bytes, cases: list[int]) -> tuple[list[Outcome], float]:
-    """Run cases on a worker; return their outcomes, and the wall-clock time of one case, s."""
+    """Run cases on a worker; return their outcomes, and the mean wall-clock time of a case, s.
+
+    Raises CampaignError if the worker has another version or instruction set than the campaign.
+    """
     began = time.perf_counter()
     loaded = _plan(plan)
     if (here := software()) != loaded.software:
         raise CampaignError(
             f"a worker of the cluster has {here}, but the campaign was started with {loaded.software}; use "
-            "workers of the same version and instruction set, so that a case has the same bits everywhere",
+            "workers of the same version and instruction set, so that a case has the same results everywhere",
             reason="version",
         )
     found = [run_case(loaded, case) for case in cases]
@@ -74,7 +77,7 @@ def _plan(plan: bytes) -> Plan:
 
 
 def distributed() -> ModuleType:
-    """Return the module ``distributed``; raises InputError if it is not installed."""
+    """Return the module ``distributed``; raise InputError if it is not installed."""
     try:
         import distributed as module
     except ImportError:
@@ -95,7 +98,7 @@ def on_dask(plan: Plan, cases: Sequence[int], workers: int, address: str) -> Ite
     cases : sequence of int
         Numbers of the cases.
     workers : int
-        Number of processes of a cluster on this machine.
+        Number of processes of the cluster, if it is ``local``.
     address : str
         Address of a scheduler, such as ``tcp://10.0.0.1:8786``, or ``local``.
 
@@ -158,7 +161,7 @@ def _client(address: str, workers: int) -> Iterator[Any]:
 
 
 class _Tasks:
-    """Tasks on the cluster; only as many are submitted as the threads of the cluster need next."""
+    """Tasks on the cluster, of which at most ``1 + _AHEAD`` per thread are submitted at a time."""
 
     def __init__(self, client: Any, plan: Plan, cases: Sequence[int], address: str) -> None:
         self._client, self._address = client, address
@@ -222,7 +225,12 @@ class _Tasks:
             raise self._no_workers("has lost all of its workers, and no other has joined for")
 
     def _results(self, future: Any, cases: list[int]) -> list[Outcome]:
-        """Return the outcomes of a task, or an empty list if its worker died and its cases are run again."""
+        """Return the outcomes of a task.
+
+        If its worker died, the cases are run again and the list is empty; after ``MOST_DEATHS`` deaths, the
+        list has a failed outcome of the first case. Raises CampaignError if the task cannot run or the
+        connection is lost.
+        """
         module = distributed()
         try:
             found, seconds = self._result(future)
@@ -263,7 +271,7 @@ class _Tasks:
         )
 
     def _wait_for_workers(self) -> int:
-        """Return the number of threads of the cluster; waits for its first worker."""
+        """Wait for the first worker, and return the number of threads of the cluster."""
         end = time.monotonic() + _WITHOUT_WORKERS_S
         while time.monotonic() < end:
             if threads := sum(self._client.nthreads().values()):
@@ -272,11 +280,11 @@ class _Tasks:
         raise self._no_workers("has no workers after")
 
     def _no_workers(self, what: str) -> CampaignError:
-        return CampaignError(
-            f"the cluster at {self._address} {what} {_WITHOUT_WORKERS_S:g} s; start one with "
-            f"'dask worker {self._address}'",
-            reason="no workers",
-        )
+        if self._address == LOCAL:
+            where, fix = "the cluster on this machine", "run the campaign again without a cluster"
+        else:
+            where, fix = f"the cluster at {self._address}", f"start one with 'dask worker {self._address}'"
+        return CampaignError(f"{where} {what} {_WITHOUT_WORKERS_S:g} s; {fix}", reason="no workers")
 
 
 def _first(error: Exception) -> str:

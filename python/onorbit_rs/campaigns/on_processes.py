@@ -95,7 +95,8 @@ def _kill(process: subprocess.Popen[bytes]) -> None:
 def on_processes(plan: Plan, cases: Sequence[int], workers: int) -> Iterator[Iterator[Outcome]]:
     """Run cases in processes during the block; yield an iterator of outcomes in order of completion.
 
-    A worker that dies is replaced, and its unfinished cases are run again.
+    A worker that dies is replaced, and its unfinished cases are run again. A case during which
+    ``MOST_DEATHS`` workers died counts as failed.
     """
     greeting = packed((plan, sys.path))
     with pooled(cases, workers, lambda: _InProcess(greeting)) as outcomes:

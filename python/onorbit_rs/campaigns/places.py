@@ -166,7 +166,11 @@ class Places:
         return {}
 
     def _of_part(self, place: Place, part: Part) -> dict[str, Place]:
-        """Return the fields of a part by key; those of joints and links list all of the robot's."""
+        """Return the fields of a part by key.
+
+        The values of joints and links cover all joints and links of the robot. ``links`` of a bus or an arm
+        is left out.
+        """
         plain = part.model_dump(mode="json", by_alias=True)
         found = {}
         for key, name in _names(type(part)).items():
@@ -203,6 +207,6 @@ def _system(at: Location) -> str:
 
 
 def _steps(path: str) -> list[str]:
-    """Return the keys of a path; ``a[0].b`` is ``a.0.b``."""
+    """Return the keys of a path; an index in brackets is a key: ``a[0].b`` gives ``a``, ``0`` and ``b``."""
     text = re.sub(r"\[(\d+|\*)\]", r".\1", path)
     return [step for step in text.split(".") if step]

@@ -68,14 +68,15 @@ class Plan:
 
 
 def plan_of(loaded: LoadedCampaign) -> Plan:
-    """Return the plan of a campaign.
+    """Return the plan of a campaign, with its defaults and the paths in ``vary`` resolved.
 
     Raises
     ------
     ScenarioError
-        If a path of ``vary`` names no entry, or a change does not fit it.
+        If a path of ``vary`` names no entry, an entry is varied twice, or a change does not fit its entry.
     InputError
-        If the sampling requires SciPy, which is missing, or has fewer dimensions than there are values.
+        If the sampling requires SciPy, which is missing, or has fewer dimensions than a case has random
+        numbers.
     """
     document, scenario = loaded
     campaign = document.campaign
@@ -108,7 +109,7 @@ def software() -> str:
 def digest_of(plan: Plan) -> str:
     """Return a digest of everything that determines the results of the cases of a campaign.
 
-    It depends on the number of cases only if the draws do, that is, unless ``sampling`` is ``random``.
+    It depends on the number of cases unless ``sampling`` is ``random``.
     """
     sampling = plan.sampling if plan.sampling == "random" else f"{plan.sampling} of {plan.cases}"
     content = {

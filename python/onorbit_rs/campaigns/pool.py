@@ -14,14 +14,14 @@ from onorbit_rs.campaigns.cases import Outcome, Stopped
 from onorbit_rs.exceptions import CampaignError
 
 BATCH_S = 0.25
-"""Wall-clock time of the cases that a worker takes at once, s."""
+"""Intended wall-clock time of the cases that a worker takes at once, s."""
 _MOST_AT_ONCE = 64
 MOST_DEATHS = 5
-"""Number of workers that may die during the same case before the case counts as failed."""
+"""Number of worker deaths during the same case at which the case counts as failed."""
 
 
 MOST_FAILED_STARTS = 20
-"""Number of workers in a row that may die before they begin a case."""
+"""Number of worker deaths in a row, each before a case begins, at which the campaign ends with an error."""
 
 
 class Executor(Protocol):

@@ -27,7 +27,8 @@ class CampaignProgress:
     def text(self, now: float) -> str:
         """Return the progress as text, such as ``12 of 100 cases, 1 error, 35 s left``."""
         errors = f", {count(self._errors, 'error', 'errors')}" if self._errors else ""
-        return f"{self._done} of {self._cases} cases{errors}, {_duration(self._left_s(now))} left"
+        cases, left = count(self._cases, "case", "cases"), _duration(self._left_s(now))
+        return f"{self._done} of {cases}{errors}, {left} left"
 
     def _left_s(self, now: float) -> float:
         ran = self._done - self._first

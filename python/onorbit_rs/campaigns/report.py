@@ -17,6 +17,7 @@ from onorbit_rs.campaigns.statistics import (
     wilson,
 )
 from onorbit_rs.campaigns.storage import CAMPAIGN, REPORT
+from onorbit_rs.common.counting import count
 from onorbit_rs.report.campaign_page import HtmlTable, campaign_page
 from onorbit_rs.report.template import Picture, Verdict
 
@@ -34,7 +35,7 @@ _MOST_RESULTS = 9
 _MOST_VALUES = 20
 """Largest number of dispersed values in the figure of the correlations."""
 _MOST_CASES = 20
-"""Largest number of cases in a table."""
+"""Largest number of rows in a table."""
 _MOST_PAIRS = 6
 """Largest number of correlations in the figure of the strongest ones."""
 _LARGEST_SVG = 600_000
@@ -59,8 +60,8 @@ def write_report(
         name=document.name,
         description=document.description,
         verdict=_verdict(columns, is_success),
-        numbers=[_percentiles(found), _sensitivities(ranked, found, len(is_success))],
-        cases=[*_failures(columns, is_success, document.campaign.success), _worst(shown)],
+        numbers=[_percentiles(found, columns["case"]), _sensitivities(ranked, found, len(is_success))],
+        cases=[*_failures(columns, is_success, document.campaign.success), _worst(shown, columns["case"])],
         pictures=list(_pictures(shown, values, ranked, outcomes, is_success)),
         campaign=(folder.path / CAMPAIGN).read_text(encoding="utf-8"),
         again=f"onorbit campaign {CAMPAIGN} --out DIR",
@@ -73,7 +74,7 @@ def _verdict(columns: dict[str, list[Any]], is_success: NDArray[np.bool_]) -> Ve
     rate = wilson(int(is_success.sum()), len(is_success))
     status = {name: columns["status"].count(name) for name in dict.fromkeys(sorted(columns["status"]))}
     kind = "passed" if is_success.all() else "warned" if is_success.any() else "failed"
-    heading = f"Success in {rate.successes} of {rate.cases} cases, {rate.fraction:.1%}"
+    heading = f"Success in {rate.successes} of {count(rate.cases, 'case', 'cases')}, {rate.fraction:.1%}"
     listed = ", ".join(f"{number} {name}" for name, number in status.items())
     text = (
         f"With {CONFIDENCE:.0%} confidence, the probability of success is between {rate.low:.1%} and "
@@ -82,14 +83,14 @@ def _verdict(columns: dict[str, list[Any]], is_success: NDArray[np.bool_]) -> Ve
     return Verdict(kind, heading, text)
 
 
-def _percentiles(found: Sequence[Result]) -> HtmlTable:
+def _percentiles(found: Sequence[Result], cases: Sequence[int]) -> HtmlTable:
     heads = {0.0: "smallest", 50.0: "median", 100.0: "largest"}
     names = [heads.get(number, f"{number:g} %") for number in PERCENTILES]
     return HtmlTable(
         "Results",
         "Percentiles of every number of the summaries that varies, over the cases that have a value.",
         ["result", "unit", *names, "case of the largest"],
-        list(percentile_rows(found)),
+        list(percentile_rows(found, cases)),
     )
 
 
@@ -147,14 +148,18 @@ def _not_met(name: str, value: Any) -> str:
     return f"event {event!r} did not happen" if part == "events" else f"{name} has no value"
 
 
-def _worst(shown: Sequence[Result]) -> HtmlTable:
-    """Return a table of the cases with the largest values of each result."""
+def _worst(shown: Sequence[Result], cases: Sequence[int]) -> HtmlTable:
+    """Return a table of the cases with the largest values of each result; ``cases`` are their numbers."""
     rows = []
     for result in shown:
-        order = np.argsort(-np.nan_to_num(result.values, nan=-np.inf), kind="stable")[:5]
-        rows.append([result.label, ", ".join(str(int(case)) for case in order)])
+        order = np.argsort(-result.values, kind="stable")  # cases without a value (NaN) are the last
+        given = [index for index in order if np.isfinite(result.values[index])][:5]
+        rows.append([result.label, ", ".join(str(cases[index]) for index in given)])
     return HtmlTable(
-        "Extreme cases", "The five cases with the largest value of each result.", ["result", "cases"], rows
+        "Extreme cases",
+        "The cases with the largest values of each result, at most five.",
+        ["result", "cases"],
+        rows,
     )
 
 

@@ -34,7 +34,10 @@ class Result(NamedTuple):
 
 
 def results(columns: dict[str, list[Any]], value_names: Sequence[str], first: Sequence[str]) -> list[Result]:
-    """Return the results that vary, without checks and measured times; those in ``first`` come first."""
+    """Return the results that vary; those named in ``first`` come first.
+
+    Checks, relative errors, and the times and numbers of rows of the run are left out.
+    """
     names = [name for name in columns if name not in FIRST and name not in value_names]
     found = []
     for name in names:
@@ -61,7 +64,7 @@ def _varies(values: Floats) -> bool:
 
 
 def _labelled(name: str, values: Floats) -> Result:
-    """Return a result with the label that the report of a run uses, after the name of its system or event."""
+    """Return a result with the label of the report of a run, preceded by its system, contact or event."""
     owner, _, last = name.rpartition(".")
     described = row(last, True)  # the value True keeps the unit of the key, without an SI prefix
     owner = owner.removeprefix("systems.").removeprefix("events.").removeprefix("contacts.")
@@ -80,11 +83,14 @@ def _rank(key: str, first: Sequence[str]) -> tuple[int, int]:
 PERCENTILES = (0.0, 5.0, 50.0, 95.0, 100.0)
 
 
-def percentile_rows(found: Sequence[Result]) -> Iterator[list[Any]]:
-    """Yield label, unit, percentiles, and the case with the largest value of each result."""
+def percentile_rows(found: Sequence[Result], cases: Sequence[int]) -> Iterator[list[Any]]:
+    """Yield label, unit, percentiles, and the case with the largest value of each result.
+
+    ``cases`` are the numbers of the cases, in the order of the values.
+    """
     for result in found:
         is_given = np.isfinite(result.values)
         given = result.values[is_given]
         numbers = [float(number) for number in np.percentile(given, PERCENTILES)]
-        largest = int(np.flatnonzero(is_given)[np.argmax(given)])
+        largest = cases[int(np.flatnonzero(is_given)[np.argmax(given)])]
         yield [result.label, result.unit, *numbers, largest]

@@ -21,6 +21,7 @@ from onorbit_rs.campaigns.report import write_report
 from onorbit_rs.campaigns.storage import FAILURES, CampaignFolder, is_campaign
 from onorbit_rs.campaigns.table import arrow, check_conditions, rows_of, table_of
 from onorbit_rs.campaigns.write import write_campaign, write_cases, write_columns
+from onorbit_rs.common.counting import count
 from onorbit_rs.common.progress import doing
 from onorbit_rs.displays.campaign import described, show_tables
 from onorbit_rs.exceptions import DtypeError, InputError, OnOrbitError
@@ -77,17 +78,19 @@ def campaign(
     Raises
     ------
     OnOrbitError
-        Before any case runs: for an invalid campaign or scenario (``ScenarioError``), a column of ``keep`` or
-        ``success`` that does not exist (``InputError``), a folder that is not empty, not writable or in use
-        (``OutputFolderError``), or if pyarrow, or SciPy or Dask where required, is not installed
-        (``InputError``). Errors of single cases are not raised; they are in the column ``error``.
+        Before any case runs: for a campaign that does not exist (``NotFoundError``), an invalid campaign or
+        scenario (``ScenarioError``), a column of ``keep`` or ``success`` that does not exist
+        (``InputError``), invalid ``workers`` or ``cluster`` (``DtypeError``, ``InputError``), a folder that
+        is not empty, not writable or in use (``OutputFolderError``), or if pyarrow, or SciPy or Dask where
+        required, is not installed (``InputError``). Errors of single cases are not raised; they are in the
+        column ``error``.
     CampaignError
         If the cluster does not answer or cannot run the cases, or the connection to it is lost. The cases on
         the disk are kept.
     OutputFolderError
         If the disk is full; the cases on the disk are kept, and the same call continues the campaign.
     """
-    count = _checked_workers(workers)
+    worker_count = _checked_workers(workers)
     _check_cluster(cluster)
     arrow()  # the table requires it after the last case
     loaded = load_campaign(source, cases=cases)
@@ -96,7 +99,7 @@ def campaign(
     conditions = loaded.document.campaign.success
 
     def engine(numbers: Sequence[int]) -> AbstractContextManager[Iterator[Outcome]]:
-        return _engine(plan, numbers, count, cluster)
+        return _engine(plan, numbers, worker_count, cluster)
 
     with _folder(plan, loaded, out, force=force) as folder:
         if folder is None:
@@ -153,9 +156,10 @@ def _keeping(folder: CampaignFolder, cases: int) -> Iterator[None]:
         finally:
             folder.flush()
     except (KeyboardInterrupt, Exception) as error:
+        done = len(folder.done())
         note = (
-            f"{len(folder.done())} of {cases} cases are kept in {folder.path}; the same command continues "
-            "the campaign"
+            f"{done} of {count(cases, 'case', 'cases')} {'is' if done == 1 else 'are'} kept in "
+            f"{folder.path}; the same command continues the campaign"
         )
         if isinstance(error, OnOrbitError):
             error.message = f"{error.message}; {note}"
@@ -173,7 +177,7 @@ def campaign_case(
     force: bool = False,
     quiet: bool = False,
 ) -> Run:
-    """Run one case of a campaign as an ordinary run; the results have the same bits as in the campaign.
+    """Run one case of a campaign as an ordinary run, with results bit-identical to those of the campaign.
 
     Parameters
     ----------
@@ -204,10 +208,11 @@ def campaign_case(
     """
     plan = plan_of(load_campaign(source, cases=cases))
     if isinstance(case, bool) or not isinstance(case, int):
-        raise DtypeError(f"case is {case!r}; it must be a whole number, from 0", name="case", got=case)
+        raise DtypeError(f"case is {case!r}; it must be a whole number, such as 0", name="case", got=case)
     if not 0 <= case < plan.cases:
+        fix = f"give a number from 0 to {plan.cases - 1}" if plan.cases > 1 else "the only case is case 0"
         raise InputError(
-            f"case {case} does not exist; the campaign has the cases 0 to {plan.cases - 1}",
+            f"case {case} does not exist; {fix}",
             name="case", got=case, expected=f"0 to {plan.cases - 1}",
         )  # fmt: skip
     scenario = check(plan.case(case).scenario, None, {})
@@ -273,7 +278,7 @@ def _folder(
 def _engine(
     plan: Plan, cases: Sequence[int], workers: int, cluster: str | None
 ) -> AbstractContextManager[Iterator[Outcome]]:
-    """Return a context that runs cases on a cluster, in processes or on threads; yields their outcomes."""
+    """Return a context that runs cases on a cluster, processes or threads, and yields their outcomes."""
     if not cases:
         return nullcontext(iter(()))
     if cluster is not None:

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from onorbit_rs.campaigns.cases import Outcome
-from onorbit_rs.common.files import exists, is_regular, output_errors, remove, replacing
+from onorbit_rs.common.files import exists, file_kind, is_regular, output_errors, remove, replacing
 from onorbit_rs.exceptions import (
     OutputFolderError,
     OutputInUseError,
@@ -37,7 +37,7 @@ _EVERY_S = 1.0
 """Wall-clock time between two parts, s; a process that is killed loses the outcomes since the last part."""
 _MOST_ROWS = 500
 _MOST_PARTS = 200
-"""Number of parts above which they are merged into one."""
+"""Number of parts at which they are merged into one."""
 
 
 class CampaignFolder:
@@ -51,7 +51,7 @@ class CampaignFolder:
         OutputNotEmptyError
             If the folder contains other files, or another campaign and ``force`` is False.
         OutputNotWritableError, OutputInUseError
-            If the folder cannot be written, or another process writes to it.
+            If the path is not a writable folder, or another process writes to it.
         """
         self.path, self._digest = Path(path), digest
         self._buffer: list[Outcome] = []
@@ -81,10 +81,14 @@ class CampaignFolder:
             if found.get("digest") == self._digest:
                 return
             if not force:
+                what = (
+                    f"another campaign, {found['name']!r}, with another scenario, seed, variation or version"
+                    if "name" in found
+                    else f"a campaign whose file {PARTS}/{IDENTITY} cannot be read"
+                )
                 raise OutputNotEmptyError(
-                    f"{self.path} contains another campaign ({found.get('name')}, with another scenario, "
-                    "seed, variation or version); choose another folder, or replace it with --force "
-                    "(force=True)",
+                    f"{self.path} contains {what}; choose another folder, or replace the campaign with "
+                    "--force (force=True)",
                     path=str(self.path),
                 )
             self._remove_campaign()
@@ -234,7 +238,7 @@ def _make(folder: Path) -> None:
     try:
         if exists(folder) and not folder.is_dir():
             raise OutputNotWritableError(
-                f"the output path {folder} is a file, but must be a folder; choose another path",
+                f"the output path {folder} is {file_kind(folder)}, but must be a folder; choose another path",
                 path=str(folder),
             )
         folder.mkdir(parents=True, exist_ok=True)

@@ -20,7 +20,7 @@ FIRST = ("case", "status", "success", "error")
 
 
 def arrow() -> Any:
-    """Return the module pyarrow; raises InputError if it is not installed."""
+    """Return the module pyarrow; raise InputError if it is not installed."""
     try:
         import pyarrow
     except ImportError:
@@ -46,7 +46,7 @@ OF_EVENTS = ("events.", "certificate.")
 def check_conditions(
     known: Sequence[str], conditions: dict[str, Condition], accepted: tuple[str, ...] = OF_EVENTS
 ) -> None:
-    """Raise InputError if a condition names no ``known`` column; suggests the nearest name.
+    """Raise InputError, with the nearest name, if a condition names no ``known`` column.
 
     Names that begin with one of ``accepted`` are not checked.
     """
@@ -54,7 +54,7 @@ def check_conditions(
         if name not in known and not name.startswith(accepted):
             raise InputError(
                 f"campaign.success: the results have no column {name!r}"
-                f"{did_you_mean(name, known) or '; the columns are those of cases.parquet'}",
+                f"{did_you_mean(name, known) or '; give the name of a column in cases.parquet'}",
                 name=name, got=name, expected=nearest(name, known),
             )  # fmt: skip
 

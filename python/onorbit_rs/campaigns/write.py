@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import yaml
 
 from onorbit_rs.campaigns.storage import CAMPAIGN, COLUMNS, TABLE
 from onorbit_rs.campaigns.table import arrow, write_table
-from onorbit_rs.common.files import replacing
+from onorbit_rs.common.files import remove, replacing
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -52,9 +53,15 @@ def write_cases(folder: CampaignFolder, table: pa.Table) -> None:
 def write_columns(folder: CampaignFolder, plan: Plan, cases: Sequence[int]) -> None:
     """Write ``columns.parquet``: one row per case and kept time, in the order of the cases.
 
-    Only the columns of one case are in memory at a time; the file has one row group per case.
+    Only the columns of one case are in memory at a time; the file has one row group per case. If no case has
+    columns, as when all cases failed, the file is removed.
     """
     if not plan.keep.columns:
+        return
+    found = folder.columns(cases)
+    first = next(found, None)
+    if first is None:
+        remove(folder.path / COLUMNS)
         return
     pa = arrow()
     import pyarrow.parquet as pq
@@ -62,7 +69,7 @@ def write_columns(folder: CampaignFolder, plan: Plan, cases: Sequence[int]) -> N
     with replacing(folder.path / COLUMNS) as temporary:
         writer = None
         try:
-            for case, columns in folder.columns(cases):
+            for case, columns in chain([first], found):
                 rows = len(columns["time"])
                 table = pa.table({"case": pa.array([case] * rows, pa.int64()), **columns})
                 writer = writer or pq.ParquetWriter(temporary, table.schema, compression="zstd")

@@ -1,4 +1,4 @@
-"""Computes the distances of watched links in the rows of a trace."""
+"""Computes the distances of links from other links and from keep-out zones in the rows of a trace."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ ROWS_AT_ONCE = 4096
 
 @dataclass(frozen=True)
 class Clearance:
-    """Distance between the two sides of a watch, or from its zone to its links, in every row of a trace.
+    """Distance between two groups of links, or from a keep-out zone to links, in every row of a trace.
 
     Attributes
     ----------
     name : str
-        Name of the watch.
+        Name of the keep-out zone or minimum distance.
     time : (T,) array
         Times of the rows, s.
     gap : (T,) array
@@ -80,7 +80,7 @@ class Clearance:
 
 @dataclass(frozen=True)
 class Prepared:
-    """A watch with the links that its patterns match."""
+    """Keep-out zone or minimum distance, with the links that its patterns match."""
 
     watch: Watch
     side_a: list[Link]
@@ -91,7 +91,7 @@ class Prepared:
 
 
 def prepare(models: Models, watch: Watch) -> Prepared:
-    """Return a watch with the links that its patterns match.
+    """Return a keep-out zone or minimum distance with the links that its patterns match.
 
     Raises
     ------
@@ -117,7 +117,7 @@ def prepare(models: Models, watch: Watch) -> Prepared:
 
 
 def clearances(models: _core.Model | Models, trace: Any, watches: Sequence[Watch]) -> dict[str, Clearance]:
-    """Return the distances of watched links in the rows of a trace.
+    """Return the distances that ``watches`` defines, in the rows of a trace.
 
     The rows are those that all systems have in common; between rows, a distance may be smaller.
 
@@ -169,7 +169,7 @@ def _rows(models: Models, trace: Any) -> tuple[Floats, dict[str, Floats], Any]:
 def _evaluated(
     prepared: Prepared, models: Models, time: Floats, rows: Mapping[str, Floats], orbit: Any
 ) -> Clearance:
-    """Return the distances of one watch."""
+    """Return the distances of one keep-out zone or minimum distance."""
     watch, parts = prepared.watch, []
     for first in range(0, len(time), ROWS_AT_ONCE):
         now = slice(first, first + ROWS_AT_ONCE)

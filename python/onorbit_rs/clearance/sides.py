@@ -27,7 +27,7 @@ Models = Mapping[str, "Model"]
 
 @dataclass(frozen=True)
 class Link:
-    """Link of a system."""
+    """Link of a system, with the body to which it is fixed."""
 
     system: str
     name: str
@@ -61,8 +61,8 @@ def links_matching(models: Models, patterns: Sequence[str], watch: str) -> list[
         own = [link for link in matching if (link.system, link.name) in solid]
         if not own:
             raise FrameError(
-                f"{watch!r}: {matching[0].path!r} has no collision shape; add a <collision> element to the "
-                "robot file, or a shape with 'collision' or Model.with_collision",
+                f"{watch!r}: no link that matches {pattern!r} has a collision shape; add a <collision> "
+                "element to the robot file, or a shape with 'collision' or Model.with_collision",
                 name=pattern, kind="link",
             )  # fmt: skip
         found |= dict.fromkeys(own)
@@ -112,7 +112,8 @@ def check_carrier(zone: KeepOut, models: Models) -> None:
 def zone_poses(zone: KeepOut, models: Models, rows: Mapping[str, Floats], orbit: Any) -> Floats:
     """Return the poses (T, 1, 4, 4) of a zone in W.
 
-    ``orbit`` contains position and velocity, (T, 3) each, of the reference orbit, if there is one.
+    ``orbit`` contains position, m, and velocity, m/s, of the reference orbit in ECI, (T, 3) each, or is None.
+    Raises InputError if the zone is fixed to lvlh and there is no orbit for which this frame is defined.
     """
     own, count = np.asarray(zone.pose, dtype=np.float64), len(next(iter(rows.values())))
     if zone.fixed_to == "world":
@@ -134,5 +135,5 @@ def zone_poses(zone: KeepOut, models: Models, rows: Mapping[str, Floats], orbit:
 
 
 def shapes_of(models: Models, links: Sequence[Link]) -> list[tuple[Model, str] | Shape]:
-    """Return the shapes of links as arguments of ``least_distances``."""
+    """Return links as arguments of ``least_distances``: the model and the name of each link."""
     return [(models[link.system], link.name) for link in links]

@@ -30,7 +30,7 @@ def _patterns(links: str | Sequence[str], name: str) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class KeepOut:
-    """Zone that links must not enter; no force acts.
+    """Zone that links must not enter; an entry is a violation, but no force acts.
 
     Attributes
     ----------
@@ -46,6 +46,11 @@ class KeepOut:
         ``SYSTEM/FRAME`` in a world or ``FRAME`` for one robot.
     pose : (4, 4) array or None
         Pose of the shape in ``fixed_to``, m; None for the identity.
+
+    Raises
+    ------
+    InputError
+        If no link is given, or the pose is not a finite (4, 4) array whose rotation is orthogonal.
     """
 
     name: str
@@ -86,6 +91,11 @@ class MinimumDistance:
         Name in results.
     links_a, links_b : str or sequence of str
         Links of both sides: ``SYSTEM/LINK`` in a world, ``LINK`` for one robot; ``*`` stands for any text.
+
+    Raises
+    ------
+    InputError
+        If a side has no links.
     """
 
     name: str

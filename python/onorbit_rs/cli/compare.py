@@ -46,7 +46,7 @@ def compare(
     as_json: JsonOption = False,
     out: Annotated[
         Path | None,
-        typer.Option("--out", "-o", metavar="FILE", help="Draw the differences: PNG, PDF or SVG."),
+        typer.Option("--out", "-o", metavar="FILE", help="Draw the differences to a PNG, PDF or SVG file."),
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing figure.")] = False,
 ) -> None:

@@ -71,6 +71,6 @@ def print_table(console: Console, table: Table) -> None:
 
 
 def _min_width(console: Console, column: Column) -> int:
-    """Return the minimum width of a column whose text may wrap between words but not within words."""
+    """Return the minimum width of a column; text wraps only between words, and not in ``no_wrap`` columns."""
     sizes = [console.measure(text) for text in (column.header, *column.cells)]
     return max(size.maximum if column.no_wrap else size.minimum for size in sizes)

@@ -24,7 +24,9 @@ def convert(
     ] = None,
     external: Annotated[
         bool,
-        typer.Option("--external", help="Joints with a PID follow commands, such as those of onorbit ros2."),
+        typer.Option(
+            "--external", help="Let joints with a PID follow commands instead of holding their positions."
+        ),
     ] = False,
     keep_going: Annotated[bool, typer.Option("--keep-going", help="Ignore unknown keys.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,

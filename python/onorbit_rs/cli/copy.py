@@ -16,7 +16,8 @@ from onorbit_rs.common.printable import shell_word
 
 def copy(
     name: Annotated[
-        str, typer.Argument(metavar="NAME", help="A bundled name.", autocompletion=bundled_names)
+        str,
+        typer.Argument(metavar="NAME", help="A bundled scenario or campaign.", autocompletion=bundled_names),
     ],
     out: Annotated[
         Path | None, typer.Option("--out", "-o", metavar="FILE", help="File of the copy; default: NAME.yaml.")
@@ -51,7 +52,7 @@ def _files_of(name: str) -> tuple[str, Path, list[Path]]:
     Raises
     ------
     NotFoundError
-        If neither a scenario nor a campaign has this name; suggests the nearest name of both.
+        If neither a scenario nor a campaign has this name; the message suggests the nearest name.
     """
     from onorbit_rs import scenarios
     from onorbit_rs.campaigns.bundled import CAMPAIGNS

@@ -69,15 +69,15 @@ def _discard_unwritable_stderr() -> None:
 
 
 def exit_stopped(stop: KeyboardInterrupt) -> NoReturn:
-    """Print which run was interrupted and which results exist, and exit with the code of the signal."""
+    """Print what stopped the command and which results exist, and exit with the code of the signal."""
     name, code = stopped_by(stop)
     message = str(stop) if isinstance(stop, RunInterrupted) else f"stopped by {name}"
     fail("; ".join([message, *getattr(stop, "__notes__", ())]), code)
 
 
 def controller_error(error: Exception) -> str:
-    """Return the message of an exception that a Python controller raised, with its location."""
+    """Return the message of an exception that Python code of a run raised, with its location."""
     frames = traceback.extract_tb(error.__traceback__)
     where = f" ({frames[-1].filename}:{frames[-1].lineno})" if frames else ""
     notes = "".join(f"; {note}" for note in getattr(error, "__notes__", ()))
-    return f"the controller raised {type(error).__name__}{where}: {error}{notes}"
+    return f"Python code of the run raised {type(error).__name__}{where}: {error}{notes}"

@@ -26,7 +26,9 @@ def export(
     ] = None,
     system: Annotated[
         str | None,
-        typer.Option(metavar="NAME", help="System of a world whose table or ephemeris is written."),
+        typer.Option(
+            metavar="NAME", help="System to write; required for tables and ephemerides of several systems."
+        ),
     ] = None,
     mcap: Annotated[Path | None, typer.Option(metavar="FILE", help="Write an MCAP bag for ROS 2.")] = None,
     bag: Annotated[Path | None, typer.Option(metavar="FILE", help="Write a bag for ROS 1.")] = None,

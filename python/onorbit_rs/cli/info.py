@@ -89,7 +89,7 @@ def _scenario(name: str) -> Scenario | WorldScenario | None:
 
 
 def _world_info(scenario: WorldScenario, name: str, picture: Path | None, *, as_json: bool) -> None:
-    """Print the systems, contacts, events and trees of a scenario with several systems."""
+    """Print systems, contacts, events and trees of connected systems of a scenario with several systems."""
     from onorbit_rs.cli.console import new_console, print_json
     from onorbit_rs.cli.world_info import describe_world, print_world
 

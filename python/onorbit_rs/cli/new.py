@@ -44,7 +44,9 @@ def new(
     out: Annotated[Path | None, typer.Option("--out", "-o", metavar="FILE", help="Output file.")] = None,
     tool: Annotated[
         str | None,
-        typer.Option(metavar="FRAME", help="Frame that moves or captures; default: the most likely tool."),
+        typer.Option(
+            metavar="FRAME", help="Frame that is moved or captures TARGET; default: the most likely tool."
+        ),
     ] = None,
     target_frame: Annotated[
         str | None,
@@ -136,14 +138,16 @@ def _check_options(
             f"--out and --picture are both {out}; give two different files", name="picture", got=str(out)
         )
     if bus is None and (at is not None or prefix):
-        raise InputError("--at and --prefix apply only with a bus; add --bus ROBOT", name="bus", got=None)
+        raise InputError(
+            "--at and --prefix apply only with a bus; add --bus ROBOT, or omit them", name="bus", got=None
+        )
 
 
 def _check_target(target: str | None, frame: str | None) -> None:
     """Raise InputError if the frame of the target is given without a target."""
     if target is None and frame is not None:
         raise InputError(
-            "--target-frame applies only with a target; write onorbit new ROBOT TARGET",
+            f"--target-frame {frame} applies only with a target; write onorbit new ROBOT TARGET, or omit it",
             name="target_frame", got=frame,
         )  # fmt: skip
 

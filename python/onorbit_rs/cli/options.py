@@ -85,7 +85,7 @@ def reading_options(
         If an option does not apply to a bundled robot or to the type of the file, or a folder does not
         exist. With a ``bus``, the message explains where to put the arguments of its xacro file.
     typer.BadParameter
-        If an argument is not written ``name=value``.
+        If an argument is not written ``name=value`` or ``name:=value``.
     """
     from onorbit_rs import robots
 
@@ -93,8 +93,9 @@ def reading_options(
     is_xacro = xacro or Path(robot).suffix.lower() == ".xacro"
     if arguments and bus is not None and not is_xacro:
         raise InputError(
-            f"--arg sets an argument of the robot, but {robot} does not end in .xacro; omit --arg, and write "
-            "the arguments of the bus in the scenario, as robot.bus.xacro_arguments",
+            f"--arg sets an argument of the robot, but {robot} does not end in .xacro; add --xacro if it is "
+            "a xacro file, or omit --arg, and write the arguments of the bus in the scenario, as "
+            "robot.bus.xacro_arguments",
             name="arg", got=arguments,
         )  # fmt: skip
     if (packages or arguments or xacro) and not robots.is_file(robot):

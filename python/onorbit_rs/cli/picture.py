@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from onorbit_rs.common.files import replacing
+from onorbit_rs.common.numbers import shortest
 from onorbit_rs.exceptions import InputError
 
 if TYPE_CHECKING:
@@ -19,7 +20,11 @@ LARGEST = 8192
 
 @dataclass(frozen=True)
 class View:
-    """Options of a picture; None for those that were not given."""
+    """Options of a picture, each None if it was not given.
+
+    ``at`` is the time, s, ``size`` the width and height in pixels, ``eye`` the position of the camera and
+    ``look_at`` the point in the middle, m, both relative to the base. ``has_collisions`` is never None.
+    """
 
     at: float | None
     size: tuple[int, int] | None
@@ -63,8 +68,8 @@ class View:
         at_s = self.at or 0.0
         if not (math.isfinite(at_s) and 0.0 <= at_s <= end_s):
             raise InputError(
-                f"--at {at_s:g} is outside the run; give a time from 0 to {end_s:g}, in s",
-                name="at", got=at_s, expected=f"0 to {end_s:g} s",
+                f"--at {shortest(at_s)} is outside the run; give a time from 0 to {shortest(end_s)}, in s",
+                name="at", got=at_s, expected=f"0 to {shortest(end_s)} s",
             )  # fmt: skip
 
 

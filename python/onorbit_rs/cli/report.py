@@ -18,7 +18,8 @@ def report(
 ) -> None:
     """Write a self-contained HTML report of a run.
 
-    It contains figures, numbers, certificate and scenario; the figures are also written as PDF.
+    It contains figures, numbers, certificate and scenario. The figures are also written as PDF, unless
+    --no-pdf is given.
     """
     from onorbit_rs.cli.console import print_json
     from onorbit_rs.common.progress import parts_bar

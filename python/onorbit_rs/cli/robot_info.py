@@ -39,10 +39,12 @@ def print_info(model: Model, console: Console) -> None:
         )
         console.print(_joints(model))
         if any(joint.damping or joint.static_friction or joint.rotor_inertia for joint in model.joints):
-            console.print("\n[bold]losses and rotors[/bold]: N m s/rad, N m, kg m² (N s/m, N, kg)")
+            console.print(
+                "\n[bold]friction and rotors[/bold]: N m s/rad, N m, N m, kg m² (prismatic: N s/m, N, N, kg)"
+            )
             console.print(_losses(model))
         if any(joint.stiffness or joint.cubic_stiffness for joint in model.joints):
-            console.print("\n[bold]springs[/bold]: N m/rad, N m/rad³, rad (N/m, N/m³, m)")
+            console.print("\n[bold]springs[/bold]: N m/rad, N m/rad³, rad (prismatic: N/m, N/m³, m)")
             console.print(_springs(model))
         for joint in model.joints:
             if joint.mimic is not None:

@@ -14,12 +14,15 @@ from onorbit_rs.common.printable import printable
 if TYPE_CHECKING:
     from onorbit_rs.ros2.node import Node
 
-PaceOption = Annotated[str, typer.Option(metavar="PACE", help="real_time, fast or stepped (by /step).")]
+PaceOption = Annotated[
+    str, typer.Option(metavar="PACE", help="real_time, fast, or stepped by messages on /step.")
+]
 DomainOption = Annotated[
     int | None, typer.Option(metavar="N", help="DDS domain, 0 to 232; default: ROS_DOMAIN_ID, or else 0.")
 ]
 ForOption = Annotated[
-    float | None, typer.Option("--for", metavar="SECONDS", help="Simulated time, s; default: the scenario's.")
+    float | None,
+    typer.Option("--for", metavar="SECONDS", help="Simulated time, s; default: as in the scenario."),
 ]
 NetworkOption = Annotated[
     str,
@@ -29,18 +32,23 @@ NetworkOption = Annotated[
     ),
 ]
 RecordOption = Annotated[
-    Path | None, typer.Option(metavar="FILE", help="Record messages and obeyed commands as MCAP.")
+    Path | None, typer.Option(metavar="FILE", help="Record messages and applied commands in an MCAP file.")
 ]
 RecordForceOption = Annotated[
     bool, typer.Option("--force", help="Replace existing files of --record and --log.")
 ]
-PausedOption = Annotated[bool, typer.Option("--paused", help="Wait for /pause false before the first step.")]
+PausedOption = Annotated[
+    bool, typer.Option("--paused", help="Start paused; a message false on /pause starts the run.")
+]
 WrenchTimeoutOption = Annotated[
     float | None,
-    typer.Option(metavar="SECONDS", help="Time without a message after which a wrench ends; default: never."),
+    typer.Option(
+        metavar="SECONDS",
+        help="Simulated time without a message after which a wrench ends, s; default: never.",
+    ),
 ]
 KeepRowsOption = Annotated[
-    int | None, typer.Option(metavar="N", help="Keep the first and the last N rows only, for long runs.")
+    int | None, typer.Option(metavar="N", help="Keep only the first row and at least the last N in memory.")
 ]
 PriorityOption = Annotated[
     bool,
@@ -70,8 +78,8 @@ def ros2(
 ) -> None:
     """Run a scenario as a live ROS 2 node.
 
-    ROS 2 is not required: pip install 'onorbit-rs[ros2]'. Ctrl-C ends the run. The exit code is 1 if the
-    certificate fails.
+    The node requires pip install 'onorbit-rs[ros2]', but no installation of ROS 2. Ctrl-C ends the run. The
+    exit code is 1 if the certificate fails.
     """
     from onorbit_rs.cli.console import print_json
     from onorbit_rs.cli.exit_codes import fail

@@ -48,7 +48,8 @@ def run(
 ) -> None:
     """Run a scenario and certify its momentum and energy.
 
-    The exit code is 1 if the certificate fails, 2 for errors, 130 after Ctrl-C, and 143 after SIGTERM.
+    The exit code is 1 if the certificate fails, 2 for errors, 130 after Ctrl-C, 143 after SIGTERM, and 129
+    after SIGHUP.
     """
     from onorbit_rs.simulation.live import CHECKPOINT_EVERY
     from onorbit_rs.simulation.run import run as run_scenario
@@ -132,4 +133,5 @@ def _failed_certificate(summary: dict[str, Any]) -> str:
     """Return the message about a run whose certificate failed, with advice."""
     from onorbit_rs.output.checks import advice
 
-    return f"the certificate failed ({summary['certificate_failures']}): {advice(summary)}"
+    what = f"the certificate failed ({summary['certificate_failures']})"
+    return f"{what}: {fix}" if (fix := advice(summary)) else what

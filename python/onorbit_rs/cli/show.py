@@ -23,7 +23,7 @@ def show(
         Path | None, typer.Option(metavar="FILE", help="Draw the scene as PNG; requires no display.")
     ] = None,
     at: Annotated[
-        float | None, typer.Option(metavar="SECONDS", help="Time of the picture; default: 0.")
+        float | None, typer.Option(metavar="SECONDS", help="Time of the picture, s; default: 0.")
     ] = None,
     size: Annotated[
         str | None,
@@ -34,7 +34,7 @@ def show(
     ] = None,
     look_at: Annotated[
         str | None,
-        typer.Option(metavar="X,Y,Z", help="Point in the middle of the picture, m, in the same axes."),
+        typer.Option(metavar="X,Y,Z", help="Point in the middle of the picture, relative to the base, m."),
     ] = None,
     collision: Annotated[
         bool, typer.Option("--collision", help="Draw the collision shapes in the picture.")

@@ -24,7 +24,7 @@ _ROWS = (
     ("base_displacement_max_m", "base displacement in W, largest", "m"),
     ("simulated_s", "simulated", "s"),
     ("wall_s", "wall-clock time of the simulation loop", "s"),
-    ("real_time_factor", "times real time", ""),
+    ("real_time_factor", "real-time factor", ""),
 )
 _FILES = (
     ("summary.json", "these numbers and more"),

@@ -23,7 +23,10 @@ ListOption = Annotated[
     bool, typer.Option("--list", help="List cases with sources and gates, without running them.")
 ]
 AllOption = Annotated[
-    bool, typer.Option("--all", help="Print all errors, not only failures or the one nearest to its gate.")
+    bool,
+    typer.Option(
+        "--all", help="Print every check of a case, not only failed ones or the one nearest to its gate."
+    ),
 ]
 
 

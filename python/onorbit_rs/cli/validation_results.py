@@ -74,7 +74,7 @@ def _widths(rows: Sequence[Row], at_most: int) -> list[int]:
 
 
 def print_count(verdicts: Sequence[Verdict], elapsed: float) -> None:
-    """Print the number of passed, failed and skipped cases."""
+    """Print the numbers of passed, failed and skipped cases, and the elapsed wall-clock time, s."""
     passed, failed, skipped = (
         sum(verdict.passed is outcome for verdict in verdicts) for outcome in (True, False, None)
     )

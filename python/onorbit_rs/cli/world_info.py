@@ -1,4 +1,4 @@
-"""Prints the systems, the contacts, the events and the trees of a scenario with several systems."""
+"""Prints the systems, contacts, events and trees of connected systems of a scenario with several systems."""
 
 from __future__ import annotations
 
@@ -53,7 +53,10 @@ def describe_world(scenario: WorldScenario, models: Mapping[str, Model]) -> dict
 
 
 def _trees(stage: Stage, models: Mapping[str, Model]) -> list[dict[str, Any]]:
-    """Return the trees of a stage as data; ``joints`` is the number of joints, with those of seatings."""
+    """Return the trees of connected systems after an event, or at the start, as data.
+
+    ``joints`` is the number of joints, including those of seatings.
+    """
     seatings = stage.seating_joints or (0,) * len(stage.trees)
     return [
         {
@@ -66,7 +69,7 @@ def _trees(stage: Stage, models: Mapping[str, Model]) -> list[dict[str, Any]]:
 
 
 def print_world(scenario: WorldScenario, models: Mapping[str, Model], console: Console) -> None:
-    """Print tables of the systems, the contacts, the events, and the trees after each event."""
+    """Print tables of systems, contacts and events, and the trees of connected systems after each event."""
     from onorbit_rs.scenario.event_stages import stages
 
     events, contacts = scenario.events, scenario.contacts
@@ -128,7 +131,7 @@ def _law(contact: Contact) -> str:
 
 
 def _add_stage(table: Any, stage: Stage, models: Mapping[str, Model]) -> None:
-    """Add one row per tree of a stage, or a remark if the event does not change the trees."""
+    """Add a row for each tree of connected systems after an event, or a remark if the event changes none."""
     after = text(stage.event or "the start")
     time = "-" if stage.time is None else f"{stage.time:.6g}"
     if stage.remark:

@@ -27,7 +27,7 @@ def parsed(text: str, longest: int) -> ast.expr:
 
 
 class Evaluator(ast.NodeVisitor, ABC):
-    """Evaluates numbers and operators; raises an error for nodes without a ``visit_`` method.
+    """Evaluates numbers and operators, and raises an error for nodes without a ``visit_`` method.
 
     A subclass adds a method for each further kind of node that its files may contain.
     """

@@ -20,12 +20,14 @@ _CHUNK = 1 << 20
 
 
 def open_to_read(file: Path) -> BinaryIO:
-    """Open a regular file; raises an OSError for anything else (folder, device, pipe) without blocking."""
+    """Open a regular file; raise OSError for anything else (folder, device, pipe) without blocking."""
     try:
         descriptor = os.open(file, _READ)
     except FileNotFoundError:
         if is_link(file):
-            raise OSError(errno.EINVAL, "it is a symbolic link without a target", str(file)) from None
+            raise OSError(
+                errno.EINVAL, "it is a symbolic link whose target does not exist", str(file)
+            ) from None
         raise
     try:
         mode = os.fstat(descriptor).st_mode
@@ -50,7 +52,7 @@ def read_bounded(stream: BinaryIO, most: int) -> bytes:
 
 
 def open_to_change(file: Path) -> BinaryIO:
-    """Open a regular file for reading and writing; creates it if missing and refuses links."""
+    """Open a regular file for reading and writing, or create it if missing; raise OSError for a link."""
     descriptor = os.open(file, os.O_RDWR | os.O_CREAT | _NO_LINK | getattr(os, "O_NONBLOCK", 0), 0o666)
     try:
         found = os.fstat(descriptor)
@@ -63,7 +65,7 @@ def open_to_change(file: Path) -> BinaryIO:
 
 
 def create(file: Path) -> None:
-    """Create an empty file; raises an OSError if the path exists, also as a link without a target."""
+    """Create an empty file; raise OSError if the path exists, even as a link without a target."""
     os.close(os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL | _NO_LINK, 0o666))
 
 

@@ -73,7 +73,7 @@ def read_bytes(path: str | os.PathLike[str], limit: int, kind: str = "file") -> 
 
 
 def read_head(path: str | os.PathLike[str], most: int, kind: str = "file") -> bytes:
-    """Return up to ``most`` bytes from the start of a file; raises the errors of :func:`check_regular`."""
+    """Return up to ``most`` bytes from the start of a file; errors are those of :func:`check_regular`."""
     return _read(path, kind, lambda stream: stream.read(most))
 
 

@@ -1,4 +1,7 @@
-"""Converts numbers given by callers, such as numpy scalars or :class:`fractions.Fraction`, to floats."""
+"""Converts numbers given by callers, such as numpy scalars or :class:`fractions.Fraction`, to floats.
+
+Also writes floats in messages without rounding them.
+"""
 
 from __future__ import annotations
 
@@ -15,3 +18,12 @@ def finite_float(value: object) -> float | None:
     except OverflowError:  # an integer with 400 digits
         return None
     return number if math.isfinite(number) else None
+
+
+def shortest(number: float) -> str:
+    """Return the shortest text that converts back to the same float; whole numbers have no decimal point.
+
+    >>> shortest(0.1), shortest(100), shortest(100.00001)
+    ('0.1', '100', '100.00001')
+    """
+    return repr(float(number)).removesuffix(".0")

@@ -6,7 +6,7 @@ from typing import Any
 
 
 def rebuild(constructor: str, arguments: tuple[Any, ...], keywords: dict[str, Any]) -> Any:
-    """Return the result of an engine constructor, given by name: ``Kepler`` or ``Kepler.from_state``."""
+    """Return the result of an engine constructor, given by its name, such as ``Kepler.from_state``."""
     from onorbit_rs import _core
 
     function: Any = _core

@@ -35,7 +35,7 @@ class Progress:
 
 @contextmanager
 def progress_bar(name: str, duration_s: float, *, quiet: bool) -> Iterator[Progress]:
-    """Show the progress of a run during the block, unless ``quiet``; yields its :class:`Progress`."""
+    """Show the progress of a run during the block, unless ``quiet``, and yield its :class:`Progress`."""
     if quiet or sys.stderr is None:
         yield Progress()
         return
@@ -50,7 +50,7 @@ def progress_bar(name: str, duration_s: float, *, quiet: bool) -> Iterator[Progr
 
 @contextmanager
 def parts_bar(name: str, *, quiet: bool) -> Iterator[Callable[[str, float], None]]:
-    """Show a progress bar during the block; yields a function that sets task name and completed fraction."""
+    """Show a progress bar during the block, and yield a function that sets task and completed fraction."""
     if quiet or sys.stderr is None:
         yield lambda part, done: None
         return
@@ -94,7 +94,7 @@ def _bar() -> Bar:
 
 @contextmanager
 def doing(name: str, *, quiet: bool) -> Iterator[Callable[[str], None]]:
-    """Show a status line during the block; yields a function that sets the name of the current task."""
+    """Show a status line during the block, and yield a function that sets the name of the current task."""
     if quiet or sys.stderr is None:
         yield lambda part: None
         return

@@ -27,7 +27,7 @@ Touch = tuple[float, float]
 
 
 def touches_of(events: Iterable[TimedEvent], end_s: float) -> dict[str, list[Touch]]:
-    """Return the start and end, s, of each contact's touches, which end at ``end_s`` without a lift-off."""
+    """Return start and end, s, of the touches of each contact; one without a lift-off ends at ``end_s``."""
     found: dict[str, list[Touch]] = {}
     for event in events:
         if event.kind == "touch_down":

@@ -84,7 +84,7 @@ def _announce(filename: str, triangles: int) -> None:
         kept = cache.folder()
         remark = f"; the result is kept in {kept}" if kept else ""
         sys.stderr.write(
-            f"dividing {filename} ({triangles} triangles) into convex pieces takes minutes{remark}\n"
+            f"dividing {filename} ({triangles} triangles) into convex pieces may take minutes{remark}\n"
         )
 
 

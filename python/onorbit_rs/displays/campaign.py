@@ -15,6 +15,7 @@ from onorbit_rs.campaigns.document import Condition
 from onorbit_rs.campaigns.report import reason
 from onorbit_rs.campaigns.results import results
 from onorbit_rs.campaigns.statistics import CONFIDENCE, wilson
+from onorbit_rs.common.counting import count
 from onorbit_rs.common.display_units import digits
 from onorbit_rs.displays.cells import rows_html
 from onorbit_rs.displays.fallback import or_plain
@@ -51,7 +52,8 @@ def campaign_html(table: pa.Table) -> str | None:
     cases, is_success = columns["case"], columns["success"]
     rate = wilson(sum(is_success), len(cases))
     head = (
-        f"<b>Campaign {escape(about['name'])}</b>: success in {rate.successes} of {rate.cases} cases, "
+        f"<b>Campaign {escape(about['name'])}</b>: success in {rate.successes} of "
+        f"{count(rate.cases, 'case', 'cases')}, "
         f"{rate.fraction:.1%} ({rate.low:.1%} to {rate.high:.1%} with {CONFIDENCE:.0%} confidence)"
     )
     conditions = {key: Condition.model_validate(one) for key, one in about["success"].items()}
@@ -59,7 +61,7 @@ def campaign_html(table: pa.Table) -> str | None:
     heads = ("result", "unit", "smallest", "median", "largest", "cases with the largest")
     shown = rows_html([_row(one, cases) for one in found[:_MOST_RESULTS]], heads) if found else ""
     if more := len(found) - _MOST_RESULTS:
-        shown += f"<div>{more} more results vary</div>" if more > 0 else ""
+        shown += f"<div>Further results that vary: {more}</div>" if more > 0 else ""
     failed = [index for index, has in enumerate(is_success) if not has]
     if failed:
         rows = [(str(cases[i]), columns["status"][i], reason(columns, i, conditions))

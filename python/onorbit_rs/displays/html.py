@@ -25,7 +25,7 @@ def model_html(model: Model) -> str:
     children: dict[str, list[Joint]] = {}
     for joint in model.joints:
         children.setdefault(joint.parent, []).append(joint)
-    head = f"<b>{escape(model.name)}</b>: {digits(model.mass)} kg, {len(model.joints)} joints"
+    head = f"<b>{escape(model.name)}</b>: {digits(model.mass)} kg, joints: {len(model.joints)}"
     lines: list[str] = []
     todo: list[tuple[str, int, str]] = [(next(iter(masses)), 0, "")]
     while todo and len(lines) < _MOST_LINKS:  # a chain may be longer than Python's recursion limit
@@ -35,7 +35,7 @@ def model_html(model: Model) -> str:
             f'<div style="padding-left:{min(depth, 40)}em">{how}<b>{escape(name)}</b> {escape(mass)}</div>'
         )
         todo += [(one.child, depth + 1, _joint(one)) for one in reversed(children.get(name, []))]
-    rest = f"<div>… {len(masses) - len(lines)} more links</div>" if todo else ""
+    rest = f"<div>… links not shown: {len(masses) - len(lines)}</div>" if todo else ""
     return f"<div>{head}{''.join(lines)}{rest}</div>"
 
 
@@ -53,7 +53,7 @@ def run_html(run: Run) -> str:
     lines += [(str(event.get("name", "")), _number(event.get("time_s")), "s", str(event.get("kind", "event")))
               for event in events[:_MOST_EVENTS]]  # fmt: skip
     if len(events) > _MOST_EVENTS:
-        lines.append((f"{len(events) - _MOST_EVENTS} more events", "", "", ""))
+        lines.append((f"events not shown: {len(events) - _MOST_EVENTS}", "", "", ""))
     return f"<div>{escape(repr(run))}{rows_html(lines)}</div>"
 
 

@@ -41,6 +41,8 @@ def show(
         If rerun-notebook is not installed (extra ``notebooks``), or this is not a notebook.
     NotFoundError
         If the folder does not exist, or contains no recording.
+    ReadError
+        If the recording has changed since the run.
     InputError
         If a size is not positive.
     DtypeError
@@ -66,6 +68,8 @@ def recording_of(source: Run | RecordedRun | str | os.PathLike[str]) -> bytes:
     ------
     NotFoundError
         If a folder does not exist, or contains no recording.
+    ReadError
+        If the recording has changed since the run.
     """
     if isinstance(source, Run):
         if source.out is None or not (source.out / RECORDING).is_file():

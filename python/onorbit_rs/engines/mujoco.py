@@ -45,13 +45,13 @@ class Mujoco:
     loops and mimic joints are equalities with the same settings; a prismatic loop is rejected. An engaged
     brake is joint friction equal to its slip torque or, if that is infinite, an equality that locks the
     joint. The connections of a world are welds, also soft: a capture removes the relative velocity within a
-    few steps instead of at once. One simulation at a time may use an instance; a concurrent step is refused.
+    few steps instead of at once. Only one simulation at a time may use an instance; a concurrent step fails.
     MuJoCo's log settings, global to the process, are disabled during a step and restored after it.
 
     Parameters
     ----------
     model : Model or dict of str to Model
-        Robot, or the models of the systems of a world by their names, in its order.
+        Robot, or the models of the systems of a world by their names, in the order of the world.
     time_step : float
         Longest step of the run, s.
     integrator : str
@@ -246,9 +246,9 @@ class Mujoco:
             systems = count(len(self._shares), "system", "systems")
             made = f"a world of {systems}" if self._is_world else "a single robot"
             raise EngineError(
-                f"this engine was created for {made} and {self._model.nq} coordinates, but the world has "
-                f"{len(q)} coordinates; create Mujoco({{name: model, ...}}) with all systems in the order of "
-                "the world",
+                f"this engine was created for {made} with {self._model.nq} coordinates and {len(self._dofs)} "
+                f"joint torques, but is used for a world with {len(q)} coordinates and {len(tau)} joint "
+                "torques; create Mujoco({name: model, ...}) with all systems in the order of the world",
                 name="engine", got="mujoco",
             )  # fmt: skip
         qpos, qvel, acceleration, done, first = self._advance(
@@ -324,8 +324,8 @@ class Mujoco:
     def _rate(self, t: float, qpos: Floats, qvel: Floats, wrenches: Wrenches) -> Floats:
         """Return ``[qvel, qacc, F, T, power, power dissipated in the joints]``, powers in W.
 
-        `F` and `T` are the total force of the environment, N, and its moment about the centre of mass, N m.
-        In a world, the values of all systems follow ``qacc``; see :func:`exchanged`.
+        `F` and `T` are the force of the environment, N, and its moment about the centre of mass, N m. In a
+        world, the values of all systems follow ``qacc``; see :func:`exchanged`. A state with NaN gives NaN.
         """
         data = self._data
         if not (np.isfinite(qpos).all() and np.isfinite(qvel).all()):
@@ -372,7 +372,7 @@ class Mujoco:
         return q, v
 
     def _acceleration(self, qpos: Floats, rate: Floats) -> Floats:
-        """Return the derivative of `v`; with `v = Rᵀ ṗ` of a base, `v̇ = Rᵀ p̈ − w × v`, in base axes."""
+        """Return the derivative of `v`; for the linear velocity `v = Rᵀ ṗ` of a base it is `Rᵀ p̈ − w × v`."""
         nv = self._model.nv
         a: Floats = rate[nv : 2 * nv][self._v_columns]
         for part in self._shares:

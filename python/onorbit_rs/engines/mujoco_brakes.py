@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def add_locks(mujoco: ModuleType, spec: Any, joints: Iterable[str], time_step: float) -> None:
-    """Add an inactive equality for each joint, which, when it is active, holds the joint at a position."""
+    """Add an inactive equality for each joint, which holds the joint at a position while it is active."""
     for name in joints:
         lock = spec.add_equality()
         lock.type, lock.objtype = mujoco.mjtEq.mjEQ_JOINT, mujoco.mjtObj.mjOBJ_JOINT
@@ -33,7 +33,7 @@ def add_locks(mujoco: ModuleType, spec: Any, joints: Iterable[str], time_step: f
 
 
 class Brakes:
-    """Brakes of a compiled model.
+    """Brakes of the joints of a compiled MuJoCo model.
 
     A brake with a finite slip torque is Coulomb friction of that torque, added to the friction of the joint.
     A brake with an infinite slip torque activates the lock of the joint at its position at the start of the

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs._core import Contact, HuntCrossley, ImpactLaw, SpringDashpot
+from onorbit_rs.common.counting import count
 from onorbit_rs.common.link_patterns import link_pattern
 from onorbit_rs.exceptions import EngineError
 
@@ -46,7 +47,7 @@ class Touch:
         return force
 
     def force(self, depth: Floats, rate: Floats) -> Floats:
-        """Return the normal force, N, at depths, m, that increase at the rates, m/s; 0 without overlap."""
+        """Return the normal force, N, ≥ 0, at depths, m, that increase at rates, m/s; 0 without overlap."""
         if isinstance(self.law, HuntCrossley):
             force = self.elastic(depth) * (1.0 + self.law.dissipation * rate)
         else:
@@ -122,7 +123,8 @@ def _check(contact: Contact) -> None:
     if contact.friction is not None and contact.friction.torsional > 0.0:
         raise EngineError(
             f"contact '{contact.name}' has torsional friction ({contact.friction.torsional:g} m), but MuJoCo "
-            "limits sliding and torsion by one common cone; set torsional to 0, or use engine: native",
+            "limits the friction force and the torsional moment together, instead of each by itself; set "
+            "torsional to 0, or use engine: native",
             name="torsional", got=contact.friction.torsional, expected=0.0,
         )  # fmt: skip
 
@@ -139,10 +141,13 @@ def _pieces(
         if any(pattern.fullmatch(f"{system}/{shape.link}") for pattern in patterns)
     ]
     if not found:
+        systems = [system for system in bodies if system]
+        known = f"{count(len(systems), 'system', 'systems')} ({', '.join(systems)})"
+        known = known if systems else "a single robot, but no named systems"
         raise EngineError(
-            f"contact '{contact}': no link with a collision shape matches {', '.join(links)} in the systems "
-            f"of this engine ({', '.join(filter(None, bodies)) or 'one robot'}); correct the names of the "
-            "links, add a collision shape to one of them, or add the missing system to 'model' of Mujoco",
+            f"contact '{contact}': no link with a collision shape matches {', '.join(links)}; this engine "
+            f"has {known}; correct the names of the links, add a collision shape to one of them, or add the "
+            "missing system to 'model' of Mujoco",
             name="contacts", got=contact,
         )  # fmt: skip
     return found
@@ -189,8 +194,8 @@ def _set_shape(mujoco: ModuleType, spec: Any, geom: Any, shape: Visual) -> None:
              "sphere": kinds.mjGEOM_SPHERE}  # fmt: skip
     if shape.kind not in known:
         raise EngineError(
-            f"link '{shape.link}' has a {shape.kind} as its collision shape, which MuJoCo does not support; "
-            "use boxes, cylinders, capsules, spheres or meshes, or engine: native",
+            f"the collision shape of link '{shape.link}' is of the kind '{shape.kind}', which is not "
+            "supported with MuJoCo; use boxes, cylinders, capsules, spheres or meshes, or engine: native",
             name=shape.link, got=shape.kind, expected=", ".join(known),
         )  # fmt: skip
     geom.type = known[shape.kind]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from onorbit_rs.common.numbers import finite_float
+from onorbit_rs.common.numbers import finite_float, shortest
 from onorbit_rs.engines.mujoco_brakes import add_locks
 from onorbit_rs.engines.mujoco_common import HARDEST, harden, link_name, path
 from onorbit_rs.engines.mujoco_contact import Touch, add_contacts
@@ -55,7 +55,7 @@ def mujoco_model(model: Model, *, time_step: float, enforce_limits: bool) -> Any
     Raises
     ------
     EngineError
-        If MuJoCo is not installed.
+        If MuJoCo is not installed, or the robot has a prismatic loop.
     ModelError
         If MuJoCo cannot represent a body or joint, such as a body without mass or inertia, or a joint whose
         static friction exceeds its kinetic friction.
@@ -65,15 +65,16 @@ def mujoco_model(model: Model, *, time_step: float, enforce_limits: bool) -> Any
 
 def _time_constant(given: float | None, time_step: float) -> float:
     """Return the time constant of welds, s, by default two time steps; raise EngineError if it is shorter."""
-    shortest = 2.0 * time_step
+    least = 2.0 * time_step
     if given is None:
-        return shortest
+        return least
     value = finite_float(given)
-    if value is None or value < shortest * (1.0 - 1e-9):
+    if value is None or value < least * (1.0 - 1e-9):
+        got = repr(given) if value is None else f"{shortest(value)} s"
         raise EngineError(
-            f"weld_time_constant is {given!r} s; it must be finite and at least two time steps, "
-            f"{shortest:g} s",
-            name="weld_time_constant", got=given, expected=f">= {shortest:g}",
+            f"weld_time_constant is {got}; it must be finite and at least two time steps, "
+            f"{shortest(least)} s",
+            name="weld_time_constant", got=given, expected=f">= {shortest(least)}",
         )  # fmt: skip
     return value
 
@@ -91,7 +92,7 @@ def world_model(
 
     The names of links and joints are paths. The first equalities of the model are inactive welds, one for
     each of ``connections``, and then an inactive lock for each joint. ``with_stops`` names the systems with
-    rigid stops. The errors are those of :func:`mujoco_model`.
+    rigid stops. The errors are those of :class:`onorbit_rs.engines.Mujoco`.
     """
     mujoco = import_mujoco()
     softness = _time_constant(weld_time_constant, time_step)
@@ -173,7 +174,7 @@ def _principal(mujoco: ModuleType, body: Body) -> tuple[Floats, Floats]:
         what = "no mass" if body.mass <= 0.0 else f"a principal moment of inertia of {moments[0]:g} kg m²"
         raise ModelError(
             f"link '{body.name}' has {what}, which MuJoCo does not support; give it a small mass and "
-            "inertia, or use engine: native (the links inside of planar and ball joints have no mass)",
+            "inertia, or use engine: native (the intermediate links of planar and ball joints have no mass)",
             link=body.name,
         )
     quat = np.empty(4)
@@ -182,7 +183,10 @@ def _principal(mujoco: ModuleType, body: Body) -> tuple[Floats, Floats]:
 
 
 def _attach(mujoco: ModuleType, body: Any, joint: Joint, *, time_step: float, enforce_limits: bool) -> Any:
-    """Set the pose of a body in its parent, and add and return its joint."""
+    """Set the pose of a body in its parent, and add and return its joint.
+
+    Raises ModelError if the static friction of the joint exceeds its kinetic friction.
+    """
     pose = np.array(joint.pose)
     quat = np.empty(4)
     mujoco.mju_mat2Quat(quat, pose[:3, :3].ravel())
@@ -194,9 +198,9 @@ def _attach(mujoco: ModuleType, body: Any, joint: Joint, *, time_step: float, en
     if joint.static_friction > joint.friction:
         unit = "N m" if joint.kind == "revolute" else "N"
         raise ModelError(
-            f"joint '{joint.name}' has a static friction of {joint.static_friction:g} {unit}, above its "
-            f"kinetic friction of {joint.friction:g} {unit}, but MuJoCo has one friction for both; make them "
-            "equal, or use engine: native",
+            f"joint '{joint.name}' has a static friction of {shortest(joint.static_friction)} {unit}, above "
+            f"its kinetic friction of {shortest(joint.friction)} {unit}, but MuJoCo has one friction for "
+            "both; make them equal, or use engine: native",
             joint=joint.name,
         )
     moving.armature, moving.frictionloss = joint.rotor_inertia, joint.friction

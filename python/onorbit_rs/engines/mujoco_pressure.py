@@ -78,7 +78,7 @@ class Contacts:
         self._held = [{int(a), int(b)} for a, b in zip(*ends, strict=True)]
 
     def forward(self, data: Any) -> None:
-        """Compute the accelerations with the declared normal forces; replaces ``mj_forward``."""
+        """Compute the accelerations with the declared normal forces. Call this instead of ``mj_forward``."""
         mujoco, model = self._mujoco, self._model
         mujoco.mj_fwdPosition(model, data)
         mujoco.mj_fwdVelocity(model, data)
@@ -121,7 +121,7 @@ class Contacts:
             data.efc_aref[rows.row] += gain @ missing
 
     def _slow_down(self, data: Any, rows: _Rows) -> bool:
-        """Apply the kinetic coefficient to contacts on the static friction cone; return True if any are."""
+        """Apply the kinetic coefficient to contacts on the static friction cone; return True if any exist."""
         found = False
         for number, point, row in zip(rows.number, rows.point, rows.row, strict=True):
             friction = self._touches[number].friction
@@ -136,7 +136,7 @@ class Contacts:
         return found
 
     def _rows(self, data: Any) -> _Rows | None:
-        """Return the points at which bodies touch, with the forces of the laws; None without any."""
+        """Return the points at which bodies touch, with the forces of the laws; None if none touch."""
         contacts = data.contact
         point = np.flatnonzero(np.asarray(contacts.efc_address) >= 0)
         if not point.size:

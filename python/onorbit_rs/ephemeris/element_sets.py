@@ -13,7 +13,7 @@ T = TypeVar("T")
 
 
 def select_set(sets: Iterable[tuple[str, str, T]], satellite: str, where: str) -> T:
-    """Return the set of a satellite, by its name (case-insensitive) or catalogue number.
+    """Return the element set of a satellite, by its name (case-insensitive) or catalogue number.
 
     Parameters
     ----------
@@ -33,7 +33,9 @@ def select_set(sets: Iterable[tuple[str, str, T]], satellite: str, where: str) -
     wanted = _word(satellite)
     found = [item for name, number, item in sets if wanted in (_word(name), _word(number))]
     if not found:
-        hint = did_you_mean(satellite, [name or number for name, number, _ in sets])
+        hint = did_you_mean(satellite, [name or number for name, number, _ in sets]) or (
+            "; give its name or catalogue number as in the file" if sets else ""
+        )
         raise ElementSetError(
             f"{where} contains no element set of {satellite!r}{hint}", name="satellite", got=satellite
         )

@@ -15,7 +15,7 @@ from onorbit_rs.exceptions import ElementSetError
 
 
 def entries(text: str, satellite: str | None = None, *, where: str = "the OMM") -> dict[str, Any]:
-    """Return the keywords and values of the only message, or of the one for ``satellite`` (name or number).
+    """Return the keywords and values of the only OMM in a text, or of that of ``satellite`` (name or number).
 
     ``where`` is the name of the source in error messages.
 
@@ -73,8 +73,8 @@ def _from_xml(text: str, where: str) -> list[dict[str, Any]]:
 
     if "<!DOCTYPE" in text:  # its entities can expand to any length
         raise ElementSetError(
-            f"{where} contains a document type (<!DOCTYPE>), which is not read, because its entities can "
-            "expand to any length; remove it"
+            f"{where} contains a document type declaration (<!DOCTYPE ...>), which is not accepted, "
+            "because its entities can expand to any length; remove the declaration"
         )
     try:
         messages = list(omm.parse_xml(io.StringIO(text)))
@@ -116,6 +116,6 @@ def _from_kvn(text: str, where: str) -> dict[str, Any]:
     if not found:
         raise ElementSetError(
             f"{where} is not an Orbit Mean-Elements Message (OMM): it is neither JSON, XML nor CSV, and has "
-            "no line KEYWORD = value"
+            "no line KEYWORD = value; give an OMM in one of these four formats"
         )
     return found

@@ -33,7 +33,7 @@ def of_lines(line1: str, line2: str, gravity: str) -> Satrec:
 
 
 def of_message(message: Mapping[str, Any], epoch: str, gravity: str) -> Satrec:
-    """Return the ``Satrec`` of a message, read by ``sgp4``; ``epoch`` is its epoch in ISO format with a Z."""
+    """Return the ``Satrec`` of an OMM, read by ``sgp4``; ``epoch`` is its epoch in ISO format with a Z."""
     satrec = Satrec()
     given = {key: value for key, value in message.items() if key not in _UNUSED}
     # SGP4 does not use the catalogue number, and a Satrec cannot store numbers above 339999
@@ -65,7 +65,7 @@ def read(satrec: Any, by_reference: bool) -> tuple[SimpleNamespace, str]:
     for name in _NUMBERS:
         if not math.isfinite(value := getattr(elements, name)):
             raise ElementSetError(
-                f"{name} of the Satrec is {value}; it must be finite; correct the element set",
+                f"{name} of the Satrec is {value}, but must be finite; correct the element set",
                 name=name,
                 got=value,
             )

@@ -36,7 +36,7 @@ def segments(path: str | Path) -> tuple[list[Segment], list[Segment]]:
     Raises
     ------
     NotFoundError, ReadError
-        If there is no such file, or it is not a kernel of positions.
+        If there is no such file, or it is damaged or not a kernel of positions.
     EarthError
         If ``jplephem`` is not installed, or the kernel lacks Sun, Moon or Earth, does not connect them, or
         has segments of another type.
@@ -79,7 +79,10 @@ def _check_records(path: str | Path) -> None:
 
 
 def _chain(kernel: Any, name: str, path: str | Path) -> list[tuple[int, int]]:
-    """Return the pairs of centre and target from a body to the barycentre of the solar system."""
+    """Return the pairs of centre and target from a body to the barycentre of the solar system.
+
+    Raises EarthError if the kernel does not contain the body.
+    """
     centres = {target: center for center, target in kernel.pairs}
     body = BODIES[name]
     chain: list[tuple[int, int]] = []
@@ -99,7 +102,10 @@ def _chain(kernel: Any, name: str, path: str | Path) -> list[tuple[int, int]]:
 def _between(
     kernel: Any, there: list[tuple[int, int]], earth: list[tuple[int, int]], path: str | Path
 ) -> list[Segment]:
-    """Return the segments of the body minus those of the Earth, without common segments."""
+    """Return the segments of the body minus those of the Earth, without common segments.
+
+    Raises EarthError if the kernel does not connect the body with the Earth.
+    """
     ends = {(there or earth)[-1][0], earth[-1][0]}
     if len(ends) > 1:
         message = (
@@ -119,8 +125,8 @@ def _series(segment: Any, path: str | Path) -> tuple[float, float, NDArray[np.fl
         kind = getattr(segment, "data_type", "?")
         if kind in (2, 3):
             message = (
-                f"{path}: the positions of body {segment.target} cannot be read ({error}); the file may be "
-                f"damaged; {_DOWNLOAD}"
+                f"{path}: the positions of body {segment.target} cannot be read ({error}), so the file may "
+                f"be damaged; {_DOWNLOAD}"
             )
             raise ReadError(message, path=str(path), kind="SPICE kernel") from None
         message = (

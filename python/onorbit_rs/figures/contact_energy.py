@@ -80,9 +80,9 @@ def ledger_of(
 ) -> tuple[Floats, dict[str, Floats]]:
     """Return the times common to the systems, (T,) s, and by name the energies of the group, (T,) J.
 
-    The recorded work of a system is that of motors, springs at joints, environment and contacts, less the
-    losses in joints and in events such as captures. The energy that contacts absorb is stored as elastic
-    energy or dissipated, so the work of motors and environment is
+    The recorded work of a system is that of motors, springs at joints, environment and contacts, minus the
+    energy lost in joints and in events such as captures. The energy that contacts absorb is stored as
+    elastic energy or dissipated, so the work of motors and environment is
     `W - W_0 + Σ (U + D) - Σ (U_0 + D_0) + L`, with the recorded work `W`, the elastic energy `U` and the
     dissipated energy `D` of each contact and spring (`D = 0`) and the energy `L` lost in events; `0` denotes
     the first row. The last entry is the sum of the energies, minus this work.
@@ -126,7 +126,7 @@ def _contacts(trace: WorldTrace, systems: Sequence[str]) -> dict[str, str]:
 def _largest_touch(
     time: Floats, elastic: Floats, events: Sequence[EventMark], contacts: Sequence[str]
 ) -> tuple[float, float] | None:
-    """Return start and end, s, of the touch during which the elastic energy is largest; None without one."""
+    """Return start and end, s, of the touch during which the elastic energy is largest, or None."""
     at = float(time[np.argmax(elastic)])
     found = touches_of(events, float(time[-1]))
     within = (touch for name in contacts for touch in found.get(name, ()) if touch[0] <= at <= touch[1])

@@ -113,7 +113,8 @@ def _draw_gaps(axes: Axes, gaps: Mapping[str, tuple[Floats, Floats]]) -> None:
 def linear_part(gaps: Sequence[Floats]) -> float | None:
     """Return the half width, m, of the linear part of a logarithmic scale for gaps; None for a linear scale.
 
-    The half width is the smallest depth or closest distance of a contact, rounded down to a power of ten.
+    The half width is the smallest depth or closest distance of a contact, but at least 1e-6 of the range of
+    the gaps, rounded down to a power of ten.
     """
     span = max(float(gap.max()) for gap in gaps) - min(float(gap.min()) for gap in gaps)
     nearest = [abs(float(gap.min())) for gap in gaps if gap.min() != 0.0]

@@ -43,11 +43,11 @@ class Drawing:
 
 
 def drawings(subject: Subject) -> Iterator[Drawing]:
-    """Yield every figure that applies to a run; those of the paper's experiment have the paper's numbers."""
+    """Yield every figure that applies to a run; in the experiment of OnOrbitROS, numbered as in the paper."""
     for number, drawing in _all(subject):
         if number and subject.is_the_papers:
             named = f"fig{number}_{drawing.name}"
-            yield Drawing(named, f"The paper's Fig. {number}. {drawing.caption}", drawing.draw)
+            yield Drawing(named, f"Fig. {number} of the OnOrbitROS paper. {drawing.caption}", drawing.draw)
         else:
             yield drawing
 
@@ -65,10 +65,12 @@ def _of_the_arm(subject: Subject) -> Iterator[tuple[int, Drawing]]:
         if model is not None:
             about = "Path of the tool in W, desired (black) and obtained (orange); the robot at three times."
             yield 4, Drawing("desired_trajectory", about, partial(desired_trajectory, trace, model))
-        about = "The path of the tool, desired (black) and obtained (orange), in W."
+        about = "Path of the tool in W, desired (black) and obtained (orange)."
         yield 5, Drawing("obtained_trajectory", about, partial(obtained_trajectory, trace))
     if "position_error" in trace.columns() and len(subject.tools) < 2:
-        about = "Desired minus obtained pose of the tool, W axes; the attitude's error as a rotation vector."
+        about = (
+            "Desired minus obtained pose of the tool in axes of W; the attitude error is a rotation vector."
+        )
         yield 6, Drawing("tracking_errors", about, partial(tracking_errors, trace))
     if model is not None and model.joint_names and np.any(trace.tau):
         about = "Effort of every joint, held over each control step."
@@ -81,7 +83,9 @@ def _of_the_controls(subject: Subject) -> Iterator[Drawing]:
     trace, model = subject.trace, subject.model
     for tool in subject.tools:
         if tool.control in trace.tracking and len(subject.tools) > 1:
-            about = f"Tracking errors of the controller {tool.control}, which moves {tool.frame}; W axes."
+            about = (
+                f"Tracking errors of the controller {tool.control}, which moves {tool.frame}, in axes of W."
+            )
             name = f"tracking_errors_{file_part(tool.control)}"
             yield Drawing(name, about, partial(control_errors, trace, tool.control, []))
     for control, joints in (subject.joint_controls or {}).items():
@@ -135,11 +139,11 @@ def _of_the_base(subject: Subject) -> Iterator[Drawing]:
     if subject.mu is None or not has_local_frame(trace) or _angle_flown_deg(trace) <= WORTH_AN_ORBIT_DEG:
         return
     about_earth = is_earth(subject.mu)
-    about = "The orbit to scale in inertial axes, its distance, and the attitude of the base relative to L."
+    about = "The orbit to scale in inertial axes, its radius, and the attitude of the base relative to L."
     yield Drawing("orbit", about, partial(orbit_overview, trace, is_earth=about_earth))
     earth = subject.earth
     if about_earth and earth is not None:
-        about = "The ground track, geodetic, and the height above the ellipsoid."
+        about = "Ground track in geodetic coordinates, and height above the ellipsoid."
         yield Drawing("ground_track", about, partial(ground_track, trace, earth))
 
 

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 SMALLEST_OPENING = 1e-18
-"""Opening, m or rad, at which the logarithmic scale ends; smaller ones are drawn there."""
+"""Opening, m or rad, at the lower end of the logarithmic scale; smaller ones are drawn there."""
 
 
 def loop_history(trace: Trace, name: str) -> Figure:

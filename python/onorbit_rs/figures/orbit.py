@@ -38,7 +38,7 @@ NEARLY_ROUND = 1e-5
 
 
 def orbit_overview(trace: Trace, *, is_earth: bool = True) -> Figure:
-    """Draw the path around the planet, the distance from its centre, and the attitude in L.
+    """Draw the path around the planet, the distance from its centre, and the attitude of the base in L.
 
     The path is to scale in inertial axes. L is the local orbital frame of the reference orbit. The radius of
     a planet other than the Earth is unknown; such a planet is drawn as a small sphere.

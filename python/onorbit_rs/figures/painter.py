@@ -17,7 +17,10 @@ if TYPE_CHECKING:
 
 
 def drawings_of(albums: Iterable[tuple[str, Subject | WorldSubject]]) -> Iterator[tuple[str, Drawing]]:
-    """Yield the stem of the file name and the drawing of each figure of the albums."""
+    """Yield the stem of the file name and the drawing of each figure of several subjects.
+
+    ``albums`` are pairs of a prefix of the file names and a subject.
+    """
     for prefix, subject in albums:
         found = drawings(subject) if isinstance(subject, Subject) else world_drawings(subject)
         for drawing in found:
@@ -25,9 +28,10 @@ def drawings_of(albums: Iterable[tuple[str, Subject | WorldSubject]]) -> Iterato
 
 
 def main() -> None:
-    """Read albums, then numbers of figures, from stdin; write each figure as PNG, preceded by its length.
+    """Read subjects, then indices of figures, from stdin; write each figure to stdout as PNG.
 
-    The process ends at the end of stdin, which it also reaches if its parent is killed.
+    The length of a figure, 8 bytes in little-endian order, precedes its content. The process ends at the end
+    of stdin, which it also reaches if its parent is killed.
     """
     albums = receive(sys.stdin.buffer)
     found = [drawing for _, drawing in drawings_of(albums)]

@@ -195,7 +195,7 @@ def others_of(count: int) -> str:
 def thin(time: Floats, values: Floats) -> tuple[Floats, Floats]:
     """Return the end points of a line, and the minimum and the maximum of each of many equal intervals.
 
-    These are at most :data:`MOST_POINTS` points between the ends. A line with fewer points is returned whole.
+    These are at most :data:`MOST_POINTS` points between the ends. A shorter line is returned whole.
     """
     if len(time) <= MOST_POINTS:
         return time, values

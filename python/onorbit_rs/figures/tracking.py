@@ -36,7 +36,10 @@ if TYPE_CHECKING:
 
 
 def tracking_errors(trace: Trace) -> Figure:
-    """Draw Fig. 6: desired minus obtained position and attitude (rotation vector) of the tool, in W."""
+    """Draw desired minus obtained position and attitude of the tool in W: Fig. 6 of the OnOrbitROS paper.
+
+    The attitude error is a rotation vector.
+    """
     time, label = clock(trace)
     figure = new_figure(COLUMN, 3.3)
     panels = figure.subplots(2, 1, sharex=True)
@@ -55,7 +58,8 @@ def control_errors(trace: Trace, name: str, joints: list[str], model: Model | No
     name : str
         Name of the control.
     joints : list of str
-        Joints of the control; empty for a control of a tool, whose errors are drawn as in Fig. 6.
+        Joints of the control; empty for a control of a tool, whose errors are drawn as by
+        :func:`tracking_errors`.
     model : Model, optional
         Robot, which determines the kinds of the joints: errors of prismatic joints, m, have a separate panel.
     """
@@ -72,7 +76,10 @@ def control_errors(trace: Trace, name: str, joints: list[str], model: Model | No
 
 
 def joint_torques(trace: Trace, model: Model) -> Figure:
-    """Draw Fig. 7: the torque of revolute joints, and in a separate panel the force of prismatic joints."""
+    """Draw the torque of revolute joints, and in a separate panel the force of prismatic joints.
+
+    This is Fig. 7 of the OnOrbitROS paper.
+    """
     time, label = clock(trace)
     names = list(model.joint_names)
     groups = [

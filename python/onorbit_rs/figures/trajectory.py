@@ -38,7 +38,9 @@ NEARLY_STILL = 0.02
 
 
 def desired_trajectory(trace: Trace, model: Model) -> Figure:
-    """Draw Fig. 4: the robot at the start, the middle and the end of the desired path, in axes of W.
+    """Draw the robot at the start, the middle and the end of the desired path of its tool, in axes of W.
+
+    This is Fig. 4 of the OnOrbitROS paper.
 
     The colours of the robot are paler at earlier times. The obtained path is drawn over the desired one.
     """
@@ -70,7 +72,9 @@ def desired_trajectory(trace: Trace, model: Model) -> Figure:
 
 
 def obtained_trajectory(trace: Trace) -> Figure:
-    """Draw Fig. 5: the desired and the obtained path of the tool in W.
+    """Draw the desired and the obtained path of the tool in W.
+
+    This is Fig. 5 of the OnOrbitROS paper.
 
     A path that is small compared with its distance from the origin of W is drawn relative to its start.
     """
@@ -99,7 +103,10 @@ def obtained_trajectory(trace: Trace) -> Figure:
 
 
 def _overlaid(drawn: list[tuple[Floats, Floats]]) -> tuple[Floats, Floats]:
-    """Return the faces of all configurations, except those of earlier ones near the same face of the last."""
+    """Return faces and colours of all configurations, of which the earlier ones are paler.
+
+    Faces of earlier configurations that are near the same face of the last one are omitted.
+    """
     last, _ = drawn[-1]
     size = float(np.ptp(last.reshape(-1, 3), axis=0).max())
     found = []
@@ -116,7 +123,7 @@ def _along(path: Floats) -> Floats:
 
 
 def _row_at_half(path: Floats) -> int:
-    """Return the first row after half of the path's length, or the middle row of a path of zero length."""
+    """Return the first row at or after half of the path's length; the middle row if the length is zero."""
     length = _along(path)
     return int(np.searchsorted(length, length[-1] / 2.0)) if length[-1] > 0.0 else len(path) // 2
 

@@ -37,7 +37,7 @@ def world_drawings(subject: WorldSubject) -> Iterator[Drawing]:
         drawn.add(connection.frames)
         by, of = connection.frames
         about = (
-            f"Motion of {of} relative to {by}, in axes of {by}; the attitude as a rotation vector. "
+            f"Motion of {of} relative to {by}, in axes of {by}; the attitude is a rotation vector. "
             "Solid vertical lines are captures; dashed vertical lines are releases."
         )
         draw = partial(captured_motion, trace, models, connection, events)

@@ -90,7 +90,7 @@ def paths_of_systems(trace: WorldTrace) -> list[Floats]:
 
 
 def distances(trace: WorldTrace) -> tuple[Floats, dict[str, Floats]]:
-    """Return the times common to all systems, s, and the distances between the bases of each pair, m."""
+    """Return the times common to all systems, s, and the distances, m, of the bases of :func:`pairs_of`."""
     names = list(trace.names)
     rows = dict(zip(names, shared_rows([np.asarray(trace[name].time) for name in names]), strict=True))
     place = {name: np.asarray(trace[name].q)[rows[name]][:, POSITION] for name in names}

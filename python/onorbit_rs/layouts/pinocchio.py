@@ -131,7 +131,7 @@ def _layout(model: Model, joints: Any, unbounded: Sequence[str]) -> tuple[Any, l
     if unknown:
         raise InputError(
             f"unbounded contains {unknown[0]!r}, which is not a moving joint of the robot"
-            f"{did_you_mean(unknown[0], names)}",
+            f"{did_you_mean(unknown[0], names) or '; Model.joint_names lists them'}",
             name="unbounded",
             got=unknown,
             expected=names,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from onorbit_rs.common.coordinates import ANGULAR, BASE_NQ, BASE_NV, LINEAR, POSITION, QUATERNION
+from onorbit_rs.common.numbers import shortest
 from onorbit_rs.common.rotations import matrix_from_quaternion, quaternion_from_matrix
 from onorbit_rs.exceptions import InputError
 from onorbit_rs.layouts.state import (
@@ -132,7 +133,7 @@ def from_spart(
     off = np.abs(np.swapaxes(rot, -1, -2) @ rot - np.eye(3)).max(initial=0.0)
     if off > NORM_TOLERANCE or (np.linalg.det(rot) < 0.0).any():
         why = (
-            f"R0ᵀ R0 differs from the identity by {off:.3g}, more than {NORM_TOLERANCE:g}"
+            f"R0ᵀ R0 differs from the identity by {shortest(off)}, more than {NORM_TOLERANCE:g}"
             if off > NORM_TOLERANCE
             else "its determinant is -1, so it contains a reflection"
         )
@@ -157,6 +158,9 @@ def _com(model: Model, base_com: ArrayLike | None) -> Floats:
     com = checked("base_com", base_com, 3)
     if com.ndim != 1:
         raise InputError(
-            f"base_com has shape {com.shape}; expected (3,)", name="base_com", got=com.shape, expected=(3,)
+            f"base_com has shape {com.shape}; the required shape is (3,)",
+            name="base_com",
+            got=com.shape,
+            expected=(3,),
         )
     return com

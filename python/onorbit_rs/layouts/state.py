@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs.common.coordinates import QUATERNION
+from onorbit_rs.common.numbers import shortest
 from onorbit_rs.common.rotations import matrix_from_quaternion
 from onorbit_rs.common.suggestions import did_you_mean, nearest
 from onorbit_rs.exceptions import DtypeError, FrameError, InputError, ShapeError
@@ -82,7 +83,9 @@ def check_unit(name: str, vectors: Floats, what: str = "the quaternion") -> None
     off = np.abs(np.linalg.norm(vectors, axis=-1) - 1.0)
     if off.size and off.max() > NORM_TOLERANCE:
         norm = float(np.ravel(np.linalg.norm(vectors, axis=-1))[np.argmax(off)])
-        message = f"the norm of {what} in {name} is {norm:.9g}; it must be 1, to within {NORM_TOLERANCE:g}"
+        message = (
+            f"the norm of {what} in {name} is {shortest(norm)}; it must be 1, to within {NORM_TOLERANCE:g}"
+        )
         raise InputError(message, name=name, got=norm, expected=1.0)
 
 
@@ -94,7 +97,7 @@ def order_of(model: Model, names: Sequence[str] | None) -> NDArray[np.intp]:
     Raises
     ------
     FrameError
-        If the model has no joint of a given name; suggests the nearest name.
+        If the model has no joint of a given name; the message suggests the nearest name.
     InputError
         If joints of the model are missing or given twice.
     DtypeError
@@ -115,7 +118,7 @@ def order_of(model: Model, names: Sequence[str] | None) -> NDArray[np.intp]:
         if name not in known:
             raise FrameError(
                 f"joints contains {name!r}, which is not a moving joint of the robot"
-                f"{did_you_mean(name, known)}",
+                f"{did_you_mean(name, known) or '; Model.joint_names lists them'}",
                 name=name, kind="joint", known=known, suggestion=nearest(name, known),
             )  # fmt: skip
     missing = [name for name in known if name not in given]

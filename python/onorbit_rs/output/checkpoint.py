@@ -122,7 +122,7 @@ class CheckpointWriter:
             if not self._has_warned:
                 self._has_warned = True
                 warnings.warn(
-                    f"{error}; the run continues and will try later to write its rows and checkpoints",
+                    f"{error}; the run continues and will try again later to write its rows and checkpoints",
                     UserWarning, stacklevel=3,
                 )  # fmt: skip
             return False
@@ -156,7 +156,7 @@ class CheckpointWriter:
             raise
 
     def _write_state(self, checkpoint: Checkpoint) -> None:
-        """Replace ``state.json``; raises a CheckpointError if the state is too large."""
+        """Replace ``state.json``; raise CheckpointError if the state is too large."""
         columns = {
             name: {"rows": one.rows, "width": one.width, "sha256": one.digest.hexdigest()}
             for name, one in self._columns.items()
@@ -170,8 +170,8 @@ class CheckpointWriter:
         content = sealed(record)
         if len(content) > _MOST:
             raise _refused(
-                f"cannot write {self._path / STATE}: the state of the run has {len(content)} bytes; at most "
-                f"{_MOST} are allowed",
+                f"cannot write {self._path / STATE}: the state of the run has {len(content)} bytes, but "
+                f"at most {_MOST} are allowed; store less in the state of Python controllers",
                 self._path,
             )
         sync_folder(self._path)
@@ -185,7 +185,7 @@ def has_checkpoint(folder: Path) -> bool:
 
 
 def read_checkpoint(folder: Path, digest: str) -> SavedCheckpoint:
-    """Read the checkpoint of an output folder, whose columns are read when they are sliced.
+    """Read the checkpoint of an output folder; its columns are read from the files when they are sliced.
 
     Raises
     ------

@@ -32,7 +32,7 @@ SUSPECT = 0.1
 
 
 class Check(NamedTuple):
-    """One check; ``holds`` is None if it was not evaluated, and ``gate`` is None if the summary lacks it."""
+    """One check of a certificate; ``holds`` is None if it was not evaluated, ``gate`` if it is unknown."""
 
     key: str
     name: str

@@ -33,7 +33,7 @@ def found_clearances(trace: Any, built: Built | BuiltWorld) -> Found:
 
 
 def add_clearances(summary: dict[str, Any], found: Found) -> None:
-    """Add the least distances to a summary, and a warning for each violation, which is also issued."""
+    """Add the least distances and their times to a summary; add and issue a warning for each violation."""
     messages = [line for line in summary["warnings"].split("\n") if line]
     for watch, values in found:
         row = values.nearest

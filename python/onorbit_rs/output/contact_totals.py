@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 def contact_totals(trace: WorldTrace) -> list[Summary]:
     """Return an entry for each contact, in the order of the trace.
 
-    ``first_touch_down_s`` is the time of the first touch, or None without one; ``touches`` is the number of
-    touches; ``normal_force_max_n`` is the largest normal force; ``impulse_ns`` is the magnitude of the
-    impulse on the second side; ``dissipated_j`` is the dissipated energy; and ``gap_min_m`` is the smallest
-    gap of all rows, whose negative values are depths.
+    ``first_touch_down_s`` is the time of the first touch, or None if there is none, and ``touches`` is the
+    number of touches. ``normal_force_max_n`` is the largest normal force, ``impulse_ns`` the magnitude of the
+    impulse on the second side, and ``dissipated_j`` the dissipated energy. ``gap_min_m`` is the smallest gap
+    of all rows; a negative gap is a depth.
     """
     first: dict[str, float] = {}
     for record in trace.events:

@@ -20,7 +20,7 @@ def latch_results(trace: WorldTrace, built: BuiltWorld) -> list[Summary]:
     """Return an entry for each latch, in the order of the events.
 
     ``time_s`` is the time of the capture, or None if the latch was not met. ``nearest_m`` and ``nearest_rad``
-    are the distance and the angle between the frames at ``nearest_s``, when their distance in the rows before
+    are the distance and the angle between the frames at ``nearest_s``, when their distance in the rows up to
     the capture was smallest. ``parted_s`` is the last time before the capture at which all contacts between
     both systems had ended, or None; ``parted_speed_m_s`` is the speed of the centre of mass of the captured
     system relative to that of the other system in the first row after that time, and ``parted_spin_rad_s``
@@ -42,7 +42,7 @@ def latch_results(trace: WorldTrace, built: BuiltWorld) -> list[Summary]:
 
 
 def _nearest(trace: WorldTrace, built: BuiltWorld, frames: list[list[str]], end: float) -> dict[str, Any]:
-    """Return the smallest distance of two frames before the time ``end``, s, with the angle at that time."""
+    """Return the smallest distance of two frames up to the time ``end``, s, and its angle and time."""
     count = int(np.searchsorted(trace.time, end, side="right"))
     configurations = [trace[system].q[:count] for system, _ in frames]
     models = [built.systems[system].model for system, _ in frames]

@@ -30,7 +30,7 @@ _CHECKPOINT = re.compile(rf"{re.escape(STATE)}|{_STEM}\.f64")
 
 
 class Entry(NamedTuple):
-    """Size and digest of a file."""
+    """Size, bytes, and SHA-256, in hexadecimal, of a file."""
 
     size: int
     sha256: str
@@ -94,7 +94,7 @@ def read_manifest(folder: Path) -> Manifest | None:
             record = unsealed(read_bounded(stream, _MOST))
         if record["format"] != _FORMAT:
             raise ValueError(
-                f"its format is {record['format']!r}; this version of onorbit reads format {_FORMAT}"
+                f"its format is {record['format']!r}, but this version of onorbit reads format {_FORMAT}"
             )
         files = {name: _entry(name, entry) for name, entry in record["files"].items()}
         names = tuple(record["checkpoint"])
@@ -106,7 +106,7 @@ def read_manifest(folder: Path) -> Manifest | None:
             f"it lacks {error}" if isinstance(error, KeyError) else getattr(error, "strerror", 0) or error
         )
         raise ReadError(
-            f"cannot read {file}: {reason}; the files of the run cannot be verified; repeat the run in "
+            f"cannot read {file}: {reason}, so the files of the run cannot be verified; repeat the run in "
             f"another folder with onorbit run {shell_word(folder / SCENARIO)} --out DIR, or remove "
             f"{MANIFEST} to read the folder without verification",
             path=str(file), kind="manifest",

@@ -92,7 +92,7 @@ class SavedRun:
             raise _unreadable(self.folder / name, name, error) from error
 
     def summary(self) -> dict[str, Any]:
-        """Return the content of ``summary.json``; raises the errors of :func:`read_summary`."""
+        """Return the content of ``summary.json``; its errors are those of :func:`read_summary`."""
         file = self.folder / SUMMARY
         try:
             with self.opened(SUMMARY) as stream:
@@ -109,7 +109,7 @@ class SavedRun:
             raise _damaged(file, "summary", error) from error
 
     def trace(self) -> Trace:
-        """Return the trace of a run with one robot; raises the errors of :func:`read_trace`."""
+        """Return the trace of a run with one robot; its errors are those of :func:`read_trace`."""
         arrays = self._arrays({"time", "q", "v", "momentum"})
         return cast("Trace", SavedTrace(arrays))
 
@@ -183,7 +183,15 @@ class SavedRun:
             raise _unreadable(file, "scenario", error) from error
 
     def scenario(self) -> Scenario | WorldScenario:
-        """Return the scenario of the run; raises ScenarioError and the errors of :meth:`scenario_text`."""
+        """Return the scenario of the run.
+
+        Raises
+        ------
+        ScenarioError
+            If the scenario is invalid.
+        NotFoundError, ReadError, IntegrityError
+            As for :meth:`scenario_text`.
+        """
         self.scenario_text()
         scenario = load(self.folder / SCENARIO)
         self.check(SCENARIO)  # raises if the file was replaced in the meantime
@@ -308,7 +316,8 @@ def _checked_world(summary: dict[str, Any]) -> dict[str, Any]:
     for part in lists:
         rows = summary.get(part, [] if part in ("contacts", "latches") else None)
         if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
-            raise TypeError(f"{part} is {_brief(rows)}; expected a list of mappings")
+            got = _brief(rows) if part in summary else "missing"
+            raise TypeError(f"{part} is {got}; expected a list of mappings")
     _checked({key: value for key, value in summary.items() if key not in ("systems", *lists)})
     return summary
 

@@ -30,7 +30,10 @@ class SavedTrace:
         return self.arrays.get(name)
 
     def columns(self) -> list[str]:
-        """Return the names of the columns that have no owner, such as a control or a contact."""
+        """Return the names of the columns that belong to no control, effect, contact or loop.
+
+        ``rereferenced`` is left out.
+        """
         return [path for path in self.arrays if split_path(path)[1] is None and path != "rereferenced"]
 
     @property

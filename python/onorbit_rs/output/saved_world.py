@@ -62,7 +62,7 @@ class SavedWorldTrace:
         return {name: one for system in self.systems.values() for name, one in system.contacts.items()}
 
     def __getitem__(self, name: str) -> Any:
-        """Return the trace of a system; raises a WorldError for another name."""
+        """Return the trace of a system; raise WorldError for an unknown name."""
         if name not in self.systems:
             known = ", ".join(self.names)
             raise WorldError(f"there is no system {name!r}; the systems are: {known}", name=name)

@@ -25,7 +25,10 @@ _ROWS_AT_ONCE = 1000
 
 
 class _Ending:
-    """What the trace of the engine, ``ending``, knows of all rows, although it contains only some of them."""
+    """Base class of streamed traces, with the results that the engine computed from all rows.
+
+    ``ending`` is the trace of the engine, which contains only some of the rows.
+    """
 
     ending: Any
 
@@ -46,7 +49,7 @@ class _Ending:
 
 @dataclass(frozen=True, repr=False)
 class StreamedTrace(_Ending, SavedTrace):
-    """Trace whose columns are read from files when used; has the attributes of :class:`onorbit_rs.Trace`.
+    """Trace with the attributes of :class:`onorbit_rs.Trace`, whose columns are read from files when used.
 
     ``ending`` is the trace of the engine, which contains the first and the last rows and the certificate of
     all rows.

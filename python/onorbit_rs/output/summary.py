@@ -82,7 +82,7 @@ def summarize(
 
 
 def _certificate(trace: Trace) -> Summary:
-    """Return the evaluated checks, the verdict, and the names of checks that were not evaluated."""
+    """Return the evaluated checks, their gates, the verdict, and the names of failed and missing checks."""
     rows = trace.certificate()
     balances: Summary = {name: value for name, value, _, _ in rows if value is not None}
     gates = {GATE + name: gate for name, value, gate, _ in rows if value is not None}
@@ -121,7 +121,7 @@ def _norms(rows: Floats) -> Floats:
 
 
 def _controls(trace: Trace, built: Built) -> Summary:
-    """Return tracking errors and outcomes of the goals of ``controllers``; empty without goals.
+    """Return the tracking errors of ``controllers`` and the outcomes of their goals, if they have any.
 
     The errors are the largest ones; for a control of a grip force, the error is that at the end.
     """
@@ -158,7 +158,7 @@ def _motion(trace: Trace, built: Built) -> Summary:
 
 
 def _losses(trace: Trace, built: Built) -> Summary:
-    """Return the energy lost in the joints, and the joints beyond their limits; empty without joints."""
+    """Return the energy dissipated in the joints, J, and the joints beyond a limit; empty without joints."""
     if np.shape(trace.q)[1] == BASE_NQ:
         return {}
     losses: Summary = {}
@@ -169,7 +169,7 @@ def _losses(trace: Trace, built: Built) -> Summary:
 
 
 def _loops(trace: Trace) -> Summary:
-    """Return the largest force, moment and opening of every closed loop."""
+    """Return the largest force, N, moment, N m, and opening, m and rad, of every closed loop."""
     loops: Summary = {}
     for name, loop in trace.loops.items():
         distance, angle = largest(lambda rows: rows, loop.opening)
@@ -184,7 +184,7 @@ def _loops(trace: Trace) -> Summary:
 
 
 def run_numbers(trace: Trace | WorldTrace, scenario: Scenario | WorldScenario) -> Summary:
-    """Return duration, speed and settings of a run, and the versions of the software that ran it."""
+    """Return the duration, wall-clock time, number of rows, settings and software versions of a run."""
     simulated_s, settings = float(trace.time[-1] - trace.time[0]), scenario.simulation
     return (
         {"simulated_s": simulated_s, "wall_s": trace.wall_s}
@@ -198,8 +198,8 @@ def run_numbers(trace: Trace | WorldTrace, scenario: Scenario | WorldScenario) -
 def _orbit(trace: Trace, scenario: Scenario, orbit: Orbit | None) -> Summary:
     """Return the entries of the summary about the orbit; empty without an orbit.
 
-    They are the inertial axes, the source of the inertial velocity, the gravity mode, and the largest
-    residual acceleration of the reference, m/s².
+    They are the inertial axes, the source of the inertial velocity, the gravity mode if the orbit has a
+    gravitational parameter, and the largest residual acceleration of the reference, m/s², if it was recorded.
     """
     if orbit is None:
         return {}

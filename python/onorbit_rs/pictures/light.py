@@ -53,7 +53,10 @@ class SunView:
         self.width = self.height = TEXELS
 
     def project(self, points: Floats) -> Floats:
-        """Return cells x and y, and the height towards the Sun above all surfaces, in cells and positive."""
+        """Return cells x and y of points (..., 3), m, and their height towards the Sun, in cells.
+
+        The height is counted from one cell below the lowest surface, so that it is positive.
+        """
         projected: Floats = (points @ self._axes.T - self._low) / self.cell
         projected[..., 2] += 1.0
         return projected

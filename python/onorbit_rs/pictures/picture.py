@@ -120,7 +120,7 @@ def _camera(scene: Scene, size: tuple[int, int], eye: Floats | None, look_at: Fl
 
 
 def _elevation_deg(scene: Scene) -> float:
-    """Return the elevation of the camera, degrees, for a picture with the Earth's horizon; 20 without it."""
+    """Return the elevation of the camera, degrees; 20 unless the horizon of the Earth is in the picture."""
     if not scene.about_earth:
         return 20.0
     ratio = 1e3 * EARTH_RADIUS_KM / float(np.linalg.norm(scene.place_eci))

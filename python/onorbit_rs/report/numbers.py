@@ -21,7 +21,7 @@ _LEAST_SCALED = 1e-9
 _SCALED = ("m", "rad", "N m", "N", "J", "m/s²", "rad/s", "m/s", "N s", "N m s")
 _NAMES = {
     "wall_s": "wall-clock time of the loop",
-    "real_time_factor": "times real time",
+    "real_time_factor": "real-time factor",
     "base_rotation_max_rad": "base rotation in W, largest",
     "base_displacement_max_m": "base displacement in W, largest",
     "joint_force_max_n": "force of a prismatic joint, largest",

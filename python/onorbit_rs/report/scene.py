@@ -45,5 +45,5 @@ def _member(scenario: Scenario, trace: Trace, summary: dict[str, Any]) -> Member
     """Return a robot of the run with its trace, its targets and the frame of its tool's path."""
     model = scenario.robot.build(scenario)
     if was_changed(model, summary):
-        raise ModelError(f"{CHANGED}, so that it cannot be drawn; repeat the run")
+        raise ModelError(f"the scene cannot be drawn: {CHANGED}")
     return Member(model, trace, targets(scenario), path_frame(scenario))

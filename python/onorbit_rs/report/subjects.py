@@ -103,11 +103,11 @@ def _with_fingers(subject: Subject, system: str, scenario: WorldScenario, trace:
 
 def _robot(scenario: Scenario, summary: dict[str, Any], remarks: list[str], system: str = "") -> Model | None:
     """Return the robot of a run; None, with a remark, if its file was changed or cannot be read."""
-    with _remarked(remarks, f"{system}the robot could not be read; figures that show it are omitted"):
+    with _remarked(remarks, f"{system}figures of the robot are omitted, because the robot could not be read"):
         model = scenario.robot.build(scenario)
         if not was_changed(model, summary):
             return model
-        remarks.append(f"{system}{CHANGED}; figures that show it are omitted")
+        remarks.append(f"{system}figures of the robot are omitted: {CHANGED}")
     return None
 
 
@@ -117,7 +117,7 @@ def _around(saved: SavedRun, scenario: Scenario, remarks: list[str]) -> tuple[Or
     One that cannot be read is None, too, and a remark is added.
     """
     orbit = earth = None
-    with _remarked(remarks, "the orbit could not be read; figures that show it are omitted"):
+    with _remarked(remarks, "figures of the orbit are omitted, because the orbit could not be read"):
         orbit = None if scenario.orbit is None else scenario.orbit.build(saved.folder)
         earth = build_earth(scenario.earth, scenario.epoch, orbit, saved.folder)
     return orbit, earth

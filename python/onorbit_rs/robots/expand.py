@@ -67,7 +67,9 @@ def expand(
         document, text = _expanded(xacro, file, package_paths, values, used, remarks)
     if not document.getElementsByTagName("link") and b"<xacro:macro" in file.read_bytes():
         raise ModelError(
-            f"{file} defines xacro macros but no robot; give the file that calls the macros", path=str(file)
+            f"{file} defines xacro macros, but its expansion contains no link; give the file that calls the "
+            "macros",
+            path=str(file),
         )
     for name in values:
         if name not in used:

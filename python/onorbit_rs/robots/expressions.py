@@ -3,7 +3,7 @@
 Nothing is compiled or executed. Expressions may contain numbers, text, booleans, lists and mappings, with
 arithmetic, comparisons, ``a if b else c``, indexing, and calls of the functions in
 :mod:`onorbit_rs.robots.functions`. Attributes of objects, lambdas, comprehensions and assignments are
-refused; the sizes of values and the work for a whole file are limited.
+rejected; the sizes of values and the work for a whole file are limited.
 """
 
 from __future__ import annotations
@@ -121,7 +121,8 @@ class _Evaluation(Evaluator):
         found = self._functions.get(name)
         if found is None or callable(found):
             raise NameError(
-                f"name {name!r} is not defined; define a property of this name, or correct the name"
+                f"name {name!r} is not defined; define {name.partition('.')[0]!r} as a property, or as an "
+                "argument for $(eval ...), or correct the name"
                 if found is None
                 else f"{name!r} is a function; call it, as {name}(...)"
             )
@@ -169,7 +170,7 @@ class _Evaluation(Evaluator):
         return slice(*(None if end is None else self.visit(end) for end in ends))
 
     def visit_Attribute(self, node: ast.Attribute) -> Any:
-        """Return ``mapping.key``, ``namespace.property`` or ``math.pi``; refuses attributes of objects."""
+        """Return ``mapping.key``, ``namespace.property`` or ``math.pi``; reject attributes of objects."""
         if node.attr.startswith("_"):
             raise self.refused(node)
         dotted = self._dotted(node)
@@ -184,7 +185,7 @@ class _Evaluation(Evaluator):
         return owner[node.attr]
 
     def _dotted(self, node: ast.Attribute) -> str | None:
-        """Return the name as text, such as ``math.sqrt``; None if ``math`` is a property of the file."""
+        """Return a dotted name, such as ``math.sqrt``; None if ``math`` is an expression or a property."""
         if not isinstance(node.value, ast.Name):
             return None
         try:

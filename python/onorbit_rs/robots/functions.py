@@ -29,17 +29,17 @@ class Work:
         self._steps, self._left = steps, steps
 
     def spend(self, steps: int) -> None:
-        """Subtract steps from the remaining steps; raises ValueError if too few remain."""
+        """Subtract steps from the remaining steps; raise ValueError if too few remain."""
         self._left -= steps
         if self._left < 0:
             raise ValueError(
-                f"the expansion of the file requires more than {self._steps} steps, the limit; simplify its "
-                "macros and expressions"
+                f"the expansion of the file exceeds the limit of {self._steps} steps; simplify its macros "
+                "and expressions"
             )
 
 
 def check_size(value: Any, work: Work) -> None:
-    """Raise ValueError unless a value is plain data of limited size."""
+    """Raise ValueError unless a value is plain data of limited size; the check spends steps of ``work``."""
     waiting, items, length = [value], 0, 0
     while waiting:
         item = waiting.pop()
@@ -47,7 +47,10 @@ def check_size(value: Any, work: Work) -> None:
         if isinstance(item, str):
             length += len(item)
             if length > MAX_TEXT:
-                raise ValueError(f"a text exceeds the limit of {MAX_TEXT} characters in xacro expressions")
+                raise ValueError(
+                    f"a value contains at least {length} characters of text, which exceeds the limit of "
+                    f"{MAX_TEXT} characters in xacro expressions"
+                )
         elif isinstance(item, int):
             if item.bit_length() > MAX_BITS:
                 raise ValueError(
@@ -70,33 +73,36 @@ def check_size(value: Any, work: Work) -> None:
 
 
 def repeated(a: Any, b: Any) -> Any:
-    """Return ``a * b``; raises ValueError if a repeated string or list exceeds its size limit."""
+    """Return ``a * b``; raise ValueError if a repeated string or list exceeds its size limit."""
     for items, times in ((a, b), (b, a)):
         if isinstance(items, (str, list, tuple)) and isinstance(times, int):
             limit, one = (MAX_TEXT, "character") if isinstance(items, str) else (MAX_ITEMS, "item")
-            what = f"{count(len(items), one, f'{one}s')} repeated {count(times, 'time', 'times')}"
+            what = f"repeating {count(len(items), one, f'{one}s')} {count(times, 'time', 'times')}"
             _check(len(items) * times <= limit, what, f"{limit} {one}s")
     return operator.mul(a, b)
 
 
 def safe_power(a: Any, b: Any) -> Any:
-    """Return ``a ** b``; raises ValueError if the result could be an integer above :data:`MAX_BITS` bits."""
+    """Return ``a ** b``; raise ValueError if the result could be an integer above :data:`MAX_BITS` bits."""
     if isinstance(a, int) and isinstance(b, int) and b > 0:
         _check(a.bit_length() * b <= MAX_BITS or abs(a) <= 1, f"{a} ** {b}", f"{MAX_BITS} bits")
     return operator.pow(a, b)
 
 
 def safe_shift(a: Any, b: Any) -> Any:
-    """Return ``a << b``; raises ValueError for a shift by more than :data:`MAX_BITS` bits."""
+    """Return ``a << b``; raise ValueError for a shift by more than :data:`MAX_BITS` bits."""
     _check(not isinstance(b, int) or b <= MAX_BITS, f"a shift by {b} bits", f"{MAX_BITS} bits")
     return operator.lshift(a, b)
 
 
 def remainder_or_text(a: Any, b: Any) -> Any:
-    """Return ``a % b``: the remainder, or formatted text; raises ValueError for unsafe formats."""
+    """Return ``a % b``: the remainder, or formatted text; raise ValueError for unsafe formats."""
     if isinstance(a, str) and (found := re.search(r"%[^a-zA-Z%]*(\(|\*|\d{3})", a)):
-        what = {"(": "a key", "*": "a width or precision of '*'"}.get(found[1], "a number of three digits")
-        raise ValueError(f"the format {a!r} contains {what}, which is not allowed in xacro expressions")
+        what = {"(": "a mapping key", "*": "a width or precision of '*'"}
+        raise ValueError(
+            f"the format {a!r} contains {what.get(found[1], 'a width or precision above 99')}, which is not "
+            "allowed in xacro expressions; use a format such as '%.3f'"
+        )
     return operator.mod(a, b)
 
 

@@ -29,7 +29,7 @@ class Nesting:
 
     @contextmanager
     def element(self) -> Iterator[None]:
-        """Count an element during the block; raises NestingError at the limit."""
+        """Count an element during the block; raise NestingError at the limit."""
         self._frames += _ELEMENT
         try:
             self._check()
@@ -39,13 +39,13 @@ class Nesting:
 
     @contextmanager
     def macro(self, name: str) -> Iterator[None]:
-        """Count a macro call during the block; raises NestingError at the limit."""
+        """Count a macro call during the block; raise NestingError at the limit."""
         with self._named(f"the macro {name!r}", _MACRO):
             yield
 
     @contextmanager
     def include(self, name: str) -> Iterator[None]:
-        """Count an include during the block; raises NestingError at the limit."""
+        """Count an include during the block; raise NestingError at the limit."""
         with self._named(f"the file {name!r}", _INCLUDE):
             yield
 
@@ -66,7 +66,7 @@ class Nesting:
         if not self._names:
             raise NestingError(TOO_DEEP)
         name, times = self._names[-1], self._names.count(self._names[-1])
-        place = f"{name} is nested in itself {times - 1} times" if times > 1 else f"in {name}"
+        place = f"{name} contains itself on {times} levels" if times > 1 else f"in {name}"
         raise NestingError(f"macros, includes or elements are nested too deeply: {place}; {HINT}")
 
 

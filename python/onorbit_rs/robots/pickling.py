@@ -22,6 +22,8 @@ def rebuild_robot(
     ------
     ModelError
         If the description has changed since the robot was pickled.
+    NotFoundError, ReadError
+        If the file of the description does not exist or cannot be read.
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # these warnings were issued when the description was first read
@@ -29,8 +31,8 @@ def rebuild_robot(
     if has_changed(model, fingerprint):
         path = keywords.get("path")
         raise ModelError(
-            f"{path or 'the description'} no longer describes the pickled robot; undo the changes to this "
-            "file or to the files that it includes, or load the robot again and pickle the new one",
+            f"{path or 'the description'} no longer describes the pickled robot; undo its changes and "
+            "those of the files that it includes, or load the robot again and pickle the new one",
             path=path and str(path),
         )
     return model

@@ -123,7 +123,8 @@ def _add_joint(robot: xml.Element, named: Mapping[str, str], joint: Joint) -> No
     if any(joint.anchor):
         raise ModelError(
             f"URDF requires the axis of joint {joint.name!r} to pass through the origin of link "
-            f"{joint.child!r}, but it does not; export the robot before calling Model.rerooted or attach",
+            f"{joint.child!r}, but this axis does not; export the robot before calling Model.rerooted or "
+            "attach",
             name=joint.name,
         )
     bounded = joint.lower is not None or joint.upper is not None

@@ -35,12 +35,13 @@ class Files:
         """Return the folder of a package, searched in ``package_paths`` and in the file's parent folders.
 
         Packages in the parent folders must contain a ``package.xml``. If the package is not found, return
-        ``package://name``; its meshes are then not drawn, and its includes are reported as missing.
+        ``package://name``; its meshes are then not drawn, and its includes are reported as missing. Raises
+        ValueError if the name is empty or a path.
         """
         if not package:
             raise ValueError(
-                "$(find …): the name of the package is empty; give a value to the xacro argument that "
-                "contains it"
+                "$(find …): the name of the package is empty; write a name, or give a value to the xacro "
+                "argument or property from which the name is taken"
             )
         if package in (".", "..") or "/" in package or "\\" in package:
             raise ValueError(
@@ -59,23 +60,25 @@ class Files:
         return str(folder)
 
     def open(self, name: str | os.PathLike[str], mode: str = "r") -> io.StringIO:
-        """Return the text of a file; replaces ``open`` within xacro.
+        """Return the text of a file; xacro calls this method instead of Python's ``open``.
 
         Raises
         ------
         OSError
             If the file does not exist or cannot be read.
         ValueError
-            If the file is outside of the packages, is not a regular file of at most 16 MiB, is not UTF-8
+            If the file is in none of the packages, is not a regular file of at most 16 MiB, is not UTF-8
             text, is empty, or has a document type.
         """
         path = Path(name)
         path.stat()  # a missing file must reach xacro as an OSError
         real = path.resolve()
-        if mode != "r" or not any(real.is_relative_to(root) for root in self._roots):
+        if mode != "r":
+            raise ValueError(f"{str(name)!r} was opened in mode {mode!r}; a xacro file may only read files")
+        if not any(real.is_relative_to(root) for root in self._roots):
             raise ValueError(
-                f"{str(name)!r} is outside of the package and is not read; if you trust it, give the "
-                f"folder {str(real.parent)!r} with {wording().packages}"
+                f"{str(name)!r} is in none of the packages from which files may be read; if you trust it, "
+                f"give the folder {str(real.parent)!r} with {wording().packages}"
             )
         try:
             raw = read_bytes(path, _LARGEST)
@@ -145,7 +148,7 @@ def _checked(raw: bytes, name: str) -> str:
         raise ValueError(f"the file {name!r} is empty; write its content, or remove its include")
     if "<!DOCTYPE" in text or "<!ENTITY" in text:
         raise ValueError(
-            f"{name!r} contains a document type (<!DOCTYPE>), which is not read, because its entities can "
-            "expand to any length; remove it"
+            f"{name!r} contains a document type declaration (<!DOCTYPE ...>), which is not accepted, because "
+            "its entities can expand to any length; remove the declaration"
         )
     return text

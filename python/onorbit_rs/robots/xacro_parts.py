@@ -260,6 +260,6 @@ def _missing(name: str, path: str, files: Files, given: Mapping[str, Any]) -> st
 
 
 def _empty(name: str, given: Mapping[str, Any]) -> str | None:
-    """Return the first xacro argument in a file name whose value is empty; None without one."""
+    """Return the first xacro argument in a file name whose value is empty; None if there is none."""
     asked = re.findall(r"\$\(arg\s+([^)\s]+)\s*\)", name)
     return next((argument for argument in asked if given.get(argument) == ""), None)

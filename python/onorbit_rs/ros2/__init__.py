@@ -24,7 +24,7 @@ _LAZY = {
 if not TYPE_CHECKING:
 
     def __getattr__(name: str) -> object:
-        """Import and return a public name on first access; raises Ros2Error if the extra is not installed."""
+        """Import and return a public name on first access; raise Ros2Error if the extra is not installed."""
         if name not in _LAZY:
             raise AttributeError(f"module 'onorbit_rs.ros2' has no attribute {name!r}")
         module, packages = _LAZY[name]

@@ -70,10 +70,14 @@ def _finite(what: str, values: Any, joints: list[str]) -> list[float]:
 
 def _order(names: list[str], joints: list[str]) -> list[int]:
     """Return the index of each joint in a message; raise a RefusedError unless it names each joint once."""
-    if sorted(names) != sorted(joints):
+    missing = [joint for joint in joints if joint not in names]
+    unknown = [name for name in names if name not in joints]
+    twice = [joint for joint in joints if names.count(joint) > 1]
+    if missing or unknown or twice:
+        faults = (("does not name ", missing, ""), ("names ", unknown, ""), ("names ", twice, " repeatedly"))
+        what = " and ".join(f"{verb}{', '.join(some)}{end}" for verb, some, end in faults if some)
         raise RefusedError(
-            f"the message names the joints {', '.join(names) or 'none'}; it must name each joint of the "
-            f"control once: {', '.join(joints)}"
+            f"the message {what}; it must name each joint of the control once: {', '.join(joints)}"
         )
     return [names.index(joint) for joint in joints]
 
@@ -138,7 +142,10 @@ def _joint_commands(system: str, controls: Mapping[str, list[str]]) -> Callable[
 
 
 def _wrench(system: str, prefix: str, frames: Mapping[str, str]) -> Callable[[Any], list[Entry]]:
-    """Return the function that converts a wrench at the origin and in the axes of its ``frame_id``."""
+    """Return the function that converts a wrench in its ``frame_id`` to an entry for a link or frame.
+
+    The torque is about the origin of the frame, and both vectors are in its axes.
+    """
     bodies = {frame: body for body, frame in frames.items()}
     bodies |= dict.fromkeys(("", BASE), next(iter(frames)))
 

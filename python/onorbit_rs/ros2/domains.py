@@ -70,7 +70,7 @@ def dds_errors(task: str, advice: str) -> Iterator[None]:
 
 @dataclass(frozen=True)
 class Joined:
-    """A domain that this process has joined; all its participants in the domain share it."""
+    """A domain that this process has joined, shared by all participants of the process in the domain."""
 
     domain: Domain
     network: str
@@ -80,7 +80,7 @@ _JOINED: WeakValueDictionary[int, Joined] = WeakValueDictionary()
 
 
 def join(domain: int, network: str) -> Joined:
-    """Join a domain, or return it if this process has joined it: CycloneDDS opens its sockets only once.
+    """Join a domain, or return it if this process has already joined: CycloneDDS opens the sockets only once.
 
     Raises
     ------

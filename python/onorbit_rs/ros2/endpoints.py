@@ -11,9 +11,9 @@ from cyclonedds.core import DDSException, InstanceState, SampleState, ViewState
 from onorbit_rs.exceptions import Ros2Error
 
 MOST = 1000
-"""Largest number of messages of a topic that are obeyed at once, and history depth of publishers."""
+"""Largest number of messages of a topic that are executed at once, and history depth of publishers."""
 MOST_COUNTED = 100_000
-"""Largest number of messages of a topic kept between two readings, so that refused ones can be counted."""
+"""Largest number of messages of a topic kept between two readings, so that messages too many are counted."""
 
 _ANY = SampleState.Any | ViewState.Any | InstanceState.Any
 _AGAIN_S = 0.2
@@ -38,7 +38,7 @@ class Writer:
             If CycloneDDS does not accept the message.
         """
         if code := ddspy_write(self._entity._ref, data):
-            raise _error(f"CycloneDDS did not accept a message of {self.topic}", code)
+            raise _error(f"CycloneDDS did not accept a message for the topic {self.topic}", code)
         self._served = self._found
 
     def subscribers(self) -> int:
@@ -92,7 +92,7 @@ class Reader:
         for _ in range(MOST_COUNTED // MOST):  # at once, it would allocate memory for the largest number
             taken = ddspy_take(self._entity._ref, _ANY, MOST)
             if isinstance(taken, int):
-                raise _error(f"CycloneDDS could not read {self.topic}", taken)
+                raise _error(f"CycloneDDS could not read the messages of the topic {self.topic}", taken)
             # a sender that leaves adds a sample without data
             found += [
                 (info.source_timestamp, info.publication_handle, data)

@@ -9,4 +9,4 @@ Entry = dict[str, Any]
 
 
 class RefusedError(ValueError):
-    """Raised for a message that cannot be obeyed; the text of the error is the reason."""
+    """Raised for a message that cannot be executed; the text of the error is the reason."""

@@ -89,7 +89,7 @@ def export_bag(
 ) -> None:
     """Write a run as a bag of ROS 1; arguments and errors as for :func:`export_mcap`.
 
-    ROS 1 has the types of all topics.
+    The message types of all topics also exist in ROS 1.
     """
     source = recorded(run, models)
     with replacing(Path(file)) as temporary, Ros1Bag(temporary) as bag:

@@ -19,4 +19,5 @@ def require(*packages: str) -> None:
     """
     missing = [name for name in packages if find_spec(name) is None]
     if missing:
-        raise Ros2Error(f"ROS messages require {' and '.join(missing)}; to install, use {HINT}")
+        what = "it" if len(missing) == 1 else "them"
+        raise Ros2Error(f"ROS messages require {' and '.join(missing)}; to install {what}, use {HINT}")

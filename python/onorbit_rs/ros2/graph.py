@@ -12,7 +12,7 @@ from onorbit_rs.ros2.messages import encode, message
 TOPIC, KIND = "ros_discovery_info", "rmw_dds_common/msg/ParticipantEntitiesInfo"
 
 ENCLAVE = b"enclave=/;"
-"""User data of participants that ROS recognises as its own."""
+"""User data that marks a DDS participant as one of ROS."""
 
 
 def entities_message(node: str, participant: Any, writers: Iterable[Any], readers: Iterable[Any]) -> bytes:

@@ -33,7 +33,7 @@ class Arrived:
     entries: list[Entry]
     refusal: str | None = None
     contested: tuple[str, ...] = ()
-    """Controls, links or topics that the message commands and to which another process has sent too."""
+    """Targets of the message (controls, links or topics) to which another process has sent messages, too."""
 
 
 class Inbox:
@@ -94,7 +94,7 @@ class Inbox:
 
 
 def _target(entry: Entry, topic: str) -> str:
-    """Return what an entry commands: a control or a link by name, with its system, or else the topic."""
+    """Return the target of an entry: a control or a link by name, with its system, or else the topic."""
     name = entry.get("control", entry.get("body"))
     return topic if name is None else f"{name} of {entry['system']}"
 
@@ -103,8 +103,8 @@ def _overflow(route: Route, count: int) -> Arrived:
     """Return the refusal of the oldest of ``count`` messages that arrived since the topic was last read."""
     least = "at least " if count >= MOST_COUNTED else ""
     refusal = (
-        f"{least}{count - MOST} messages, the oldest of {least}{count} that arrived since the topic was last "
-        f"read; the node obeys {MOST} at once, so send fewer"
+        f"{least}{count} messages arrived since the topic was last read, but the node processes at most "
+        f"{MOST} at once, so it ignored {least}the oldest {count - MOST}; send fewer"
     )
     return Arrived(route.reader.topic, route.reader.kind, b"", [], refusal)
 

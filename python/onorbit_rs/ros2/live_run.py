@@ -21,7 +21,7 @@ _LONGEST_TICK = 1e-3
 
 
 class LiveRun:
-    """A run that is advanced to given times and obeys commands at its current time.
+    """A run that is advanced to given times and executes commands at its current time.
 
     Attributes
     ----------
@@ -126,14 +126,14 @@ class LiveRun:
         while self._wrenches.next <= t:
             end = max(self._wrenches.next, self.time)
             self._stepper.advance_to(end)
-            for entry in self._wrenches.take(end):  # the stepper may stop at a cut that rounding puts before
+            for entry in self._wrenches.take(end):  # rounding may end the advance just before the timeout
                 self.log.apply(self._stepper, entry)
                 given.append(entry)
         self._stepper.advance_to(t)
         return given
 
     def command(self, entries: Sequence[Entry]) -> None:
-        """Give commands at the current time; if one of them is wrong, give none and raise an OnOrbitError."""
+        """Apply commands at the current time; if one is invalid, apply none and raise an OnOrbitError."""
         self.log.apply(self._stepper, *entries)
         self._wrenches.note(entries, self.time)
 

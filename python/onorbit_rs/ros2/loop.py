@@ -31,7 +31,7 @@ class Loop:
     has_priority: bool
 
     def spin(self) -> None:
-        """Obey messages and advance the run, until its end or until a signal stops the node."""
+        """Execute messages and advance the run, until its end or until a signal stops the node."""
         self.session.publish_present()
         if self.clock is None:
             self._repeat(lambda slack: None)
@@ -46,9 +46,9 @@ class Loop:
             self._turn(tidy)
 
     def _turn(self, tidy: Callable[[float], None]) -> None:
-        """Read the messages shortly before the next tick, wait for it, and advance unless the run waits.
+        """Read the messages shortly before a tick, wait for the tick, and advance unless the run waits.
 
-        Before a tick that is due later, the messages are read every 50 ms.
+        If the tick is not near, only the messages are read, after a sleep of 50 ms.
         """
         session, clock = self.session, self.clock
         is_near = True
@@ -57,7 +57,7 @@ class Loop:
         elif clock is not None:
             tidy(clock.ahead(session.run.time))
             is_near = clock.approach(session.run.time)
-        self.orders.obey()
+        self.orders.execute()
         self.rivals.point_out(session)
         if session.is_waiting:
             self._idle()

@@ -36,7 +36,7 @@ The announcements are frequent; otherwise, a node that only listens to multicast
 
 
 def check(domain: int) -> None:
-    """Raise an error if the loopback interface is down or all participants of the domain are taken.
+    """Raise an error if the loopback interface is down, or the ports of all participants are taken.
 
     For these causes, CycloneDDS prints a text and raises an error that does not name the cause.
 
@@ -55,8 +55,8 @@ def check(domain: int) -> None:
     if not any(_is_free(port) for port in _ports(domain)):
         first, last = _ports(domain)[0], _ports(domain)[-1]
         raise Ros2Error(
-            f"DDS domain {domain} has no free participant: the UDP ports {first}, {first + 2}, ... {last} "
-            "are taken; end other nodes or use another domain"
+            f"DDS domain {domain} is full: the UDP ports of its participants ({first}, {first + 2}, ... "
+            f"{last}) are all in use; end other nodes or use another domain"
         )
 
 

@@ -58,7 +58,7 @@ class McapFile:
         self._write(Header(profile="ros2", library=f"onorbit_rs {build_info()['version']}"))
 
     def add_topic(self, name: str, kind: str, *, is_latched: bool = False) -> int:
-        """Add a topic, and return its number for :meth:`write`; raises a KeyError for an unknown type."""
+        """Add a topic, and return its number for :meth:`write`; raise KeyError for an unknown type."""
         if kind not in self._schemas:
             text = STORE.generate_msgdef(kind, ros_version=2)[0]
             self._schemas[kind] = Schema(

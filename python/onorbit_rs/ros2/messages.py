@@ -50,7 +50,7 @@ def stamp(time: float) -> Any:
 
 
 class Marks:
-    """Placeholders for the numbers of a message: random values, so that each occurs once in its bytes."""
+    """Placeholders for the numbers of a message: random values, each of which occurs once in its bytes."""
 
     def __init__(self) -> None:
         """Create the placeholder of the time; the others are created on request."""

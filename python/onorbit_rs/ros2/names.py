@@ -10,7 +10,12 @@ _INVALID = re.compile(r"[^A-Za-z0-9_]")
 
 
 def ros_name(name: str) -> str:
-    """Return a name with characters that a ROS topic may contain; the others become single underscores."""
+    """Return a name that is valid in a ROS topic, given the name of a system, control or link.
+
+    Runs of underscores and invalid characters become one underscore, except at the end, where they are
+    removed. An underscore at the start is kept: the name is valid, and tools of ROS 2 do not list its topics
+    by default. The letter ``n`` is put before a digit at the start, and an empty name becomes ``x``.
+    """
     cleaned = re.sub(r"_{2,}", "_", _INVALID.sub("_", name)).rstrip("_") or "x"
     return f"n{cleaned}" if cleaned[0].isdigit() else cleaned
 
@@ -28,8 +33,8 @@ def ros_names(names: Iterable[str], kind: str) -> dict[str, str]:
     wanted = {name: ros_name(name) for name in names}
     kept = {name for name, ros in wanted.items() if ros == name}
     reason = (
-        "names in ROS topics must be distinct, begin with a letter, not end with an underscore, and contain "
-        f"only letters, digits and single underscores; these {kind}s are renamed there"
+        "names in ROS topics must be distinct, contain only letters, digits and single underscores, and "
+        f"neither begin with a digit nor end with an underscore; these {kind}s are renamed there"
     )
     return _numbered(wanted, kept, kept, reason)
 

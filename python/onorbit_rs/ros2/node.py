@@ -1,4 +1,4 @@
-"""A node that runs a simulation, publishes its topics and obeys its command topics."""
+"""A node that runs a simulation, publishes its topics and executes the messages of command topics."""
 
 from __future__ import annotations
 
@@ -96,8 +96,8 @@ class Node:
             File to which each command is written, which replaces an existing file; ``onorbit run --commands``
             repeats the run from it. A run with a log cannot be reset.
         record : str or path, optional
-            MCAP file of the messages that the node publishes and of the commands that it obeys; :meth:`close`
-            completes it and replaces an existing file. A run that is recorded cannot be reset.
+            MCAP file of the messages that the node publishes and of the commands that it executes;
+            :meth:`close` completes it and replaces an existing file. A run that is recorded cannot be reset.
         wrench_timeout : float, optional
             Simulated time, s, after which a wrench on a link ends unless another message for the link
             arrives. Default: no timeout.
@@ -141,7 +141,7 @@ class Node:
             self._publisher = Publisher(self._participant, self.topics, on_message, self._recording)
             self._session = Session(self._run, self._publisher, pace, is_paused)
             self._inbox = self._subscribed()
-            fixed = "the commands are logged, and a log has one run" if log is not None else None
+            fixed = "the commands are logged, and a log contains one run" if log is not None else None
             if record is not None:
                 fixed = "the run is recorded, and times in a bag do not go back"
             orders = Orders(self._session, self._inbox, lambda: self._clock.restart(0.0), fixed)
@@ -179,7 +179,7 @@ class Node:
 
     @property
     def commands(self) -> list[Entry]:
-        """Commands obeyed so far with their simulated times, s; entries as in a file of commands."""
+        """Commands executed so far with their simulated times, s; entries as in a file of commands."""
         return list(self._run.log.entries)
 
     @property
@@ -213,13 +213,13 @@ class Node:
         InputError
             If the duration is not positive.
         Ros2Error
-            If the run of this node has ended.
+            If this node has already run or was closed.
         OnOrbitError
             Errors of the run.
         """
         check_duration(duration)
         if self._has_ended:
-            raise Ros2Error("the run of this node has ended; create another Node for another run")
+            raise Ros2Error("this node has already run or was closed; create another Node for another run")
         self._has_ended = True
         if not self._run.plan(np.inf if duration is None else duration):
             self._session.say(
@@ -275,7 +275,7 @@ def _check(simulation: object, pace: str, log: _File | None, record: _File | Non
         )
     if log is not None and record is not None and Path(log).resolve() == Path(record).resolve():
         raise InputError(
-            f"log and record are the same file, {record}; give each its own",
+            f"log and record are the same file, {record}; give two different files",
             name="log", got=log, expected="another file than record",
         )  # fmt: skip
 
@@ -284,6 +284,6 @@ def check_duration(duration: float | None) -> None:
     """Raise an InputError if a duration, s, is not positive; None, for an open end, is valid."""
     if duration is not None and not (isinstance(duration, Real) and duration > 0.0):
         raise InputError(
-            f"the duration is {duration!r} s; it must be positive",
+            f"the duration is {duration!r} s; it must be a positive number",
             name="duration", got=duration, expected="a positive number of seconds",
         )  # fmt: skip

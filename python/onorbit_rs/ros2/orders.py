@@ -1,4 +1,4 @@
-"""Obeys or refuses the messages that arrive, and answers them."""
+"""Executes or rejects the messages that arrive, and answers them."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ _FAR_S = 3600.0
 
 
 class Orders:
-    """Obeys or refuses the messages of an inbox."""
+    """Executes or rejects the messages of an inbox."""
 
     def __init__(
         self, session: Session, inbox: Inbox, on_reset: Callable[[], None], fixed: str | None
     ) -> None:
         """Store a session and its inbox.
 
-        ``on_reset`` is called after each reset. ``fixed`` is the reason to refuse resets; None allows them.
+        ``on_reset`` is called after each reset. ``fixed`` is the reason to reject resets; None allows them.
         """
         self._session, self._inbox = session, inbox
         self._on_reset, self._fixed = on_reset, fixed
 
-    def obey(self) -> None:
-        """Obey and record the messages that have arrived; refuse those that are wrong, with an answer."""
+    def execute(self) -> None:
+        """Execute and record the messages that have arrived; answer invalid messages with the reason."""
         for arrived in self._inbox.take():
             if arrived.contested:
                 text = (
@@ -45,11 +45,11 @@ class Orders:
             if arrived.refusal is not None:
                 self._refuse(arrived.topic, arrived.refusal)
             now = self._session.run.time
-            if arrived.entries and self._obey(arrived):
+            if arrived.entries and self._execute(arrived):
                 self._session.publisher.record(arrived.topic, arrived.kind, now, arrived.data)
 
-    def _obey(self, arrived: Arrived) -> bool:
-        """Obey the entries of a message, or refuse all of them with an answer; return True if obeyed."""
+    def _execute(self, arrived: Arrived) -> bool:
+        """Execute the entries of a message, or reject all of them with an answer; return True if executed."""
         entry = arrived.entries[0]
         if "pause" in entry:
             return self._pause(arrived.topic, entry["pause"])
@@ -84,7 +84,7 @@ class Orders:
         return True
 
     def _step(self, topic: str, length: float) -> bool:
-        """Advance by a length of simulated time, s; return False if this is refused."""
+        """Advance by a length of simulated time, s; return False if this is not possible."""
         session = self._session
         now = session.run.time
         if not session.is_waiting:
@@ -108,7 +108,7 @@ class Orders:
         topic, entry, now = arrived.topic, arrived.entries[0], self._session.run.time
         try:
             self._session.run.command(arrived.entries)
-        except OutputFolderError:  # it was obeyed, but the log is incomplete
+        except OutputFolderError:  # it was executed, but the log is incomplete
             raise
         except OnOrbitError as error:
             return self._refuse(topic, str(error))
@@ -120,6 +120,6 @@ class Orders:
         return True
 
     def _refuse(self, topic: str, reason: str) -> bool:
-        """Publish the answer that a message is refused, with the reason; return False."""
+        """Publish the answer that a message is rejected, with the reason; return False."""
         self._session.say(ERROR, topic, f"refused: {reason}")
         return False

@@ -37,7 +37,7 @@ class Recorded:
     rows: Mapping[str, Rows]
     events: Sequence[EventRecord]
     orbit: Orbit | None = None
-    """Reference orbit; None without one, for a trace alone, and if its data cannot be read any more."""
+    """Reference orbit; None if the run has none, for a trace alone, and if its data can no longer be read."""
 
 
 def recorded(source: Source, models: Models | None = None) -> Recorded:
@@ -104,9 +104,10 @@ def _check_joints(trace: Any, models: Mapping[str, Model]) -> None:
         own = trace[name] if hasattr(trace, "names") else trace
         joints = np.asarray(own.q)[:, JOINTS_Q].shape[1]
         if joints != len(model.joint_names):
+            whose = f"the model of system {name!r}" if hasattr(trace, "names") else "the model"
             raise InputError(
-                f"the model of {name} has {count(len(model.joint_names), 'joint', 'joints')}, but its trace "
-                f"has {joints}; give the model of the run",
+                f"{whose} has {count(len(model.joint_names), 'joint', 'joints')}, but the trace has "
+                f"{joints}; give the model of the run",
                 name="models", got=model, expected=f"a model with {joints} joints",
             )  # fmt: skip
 
@@ -126,8 +127,11 @@ def _by_name(trace: Trace | WorldTrace, models: Models | None) -> Mapping[str, M
     if isinstance(models, Mapping) and sorted(models) == sorted(systems):
         return {name: models[name] for name in systems}
     expected = "a Model" if len(systems) == 1 else f"a mapping with the systems {', '.join(systems)}"
+    given = "is not given" if models is None else f"is of type {type(models).__name__}"
+    if isinstance(models, Mapping):
+        given = f"has the keys {', '.join(map(repr, models))}" if models else "is empty"
     raise InputError(
-        f"models is of type {type(models).__name__}; a trace does not contain its robots, so give {expected}",
+        f"models {given}; a trace does not contain its robots, so give {expected}",
         name="models",
         got=models,
         expected=expected,

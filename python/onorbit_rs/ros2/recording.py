@@ -1,4 +1,4 @@
-"""Records what a live node publishes and the commands that it obeys."""
+"""Records the messages that a live node publishes, and the commands that it executes."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class Recording:
             self._open = stack.pop_all()
 
     def rows(self, rows: Mapping[str, Rows]) -> None:
-        """Record the messages of the rows of each system; raises an OutputFolderError on a full disk."""
+        """Record the messages of the rows of each system; raise OutputFolderError on a full disk."""
         for system, part in rows.items():
             self._pending[system].append(part)
         if max(sum(map(len, parts)) for parts in self._pending.values()) >= _ROWS:
@@ -73,7 +73,7 @@ class Recording:
         self._pending.clear()
 
     def message(self, topic: str, kind: str, time: float, data: bytes) -> None:
-        """Record a message, in CDR, of a simulated time, s; raises an OutputFolderError on a full disk."""
+        """Record a message, in CDR, of a simulated time, s; raise OutputFolderError on a full disk."""
         with output_errors(self._file):
             if topic not in self._numbers:
                 self._numbers[topic] = self._bag.add_topic(topic, kind)

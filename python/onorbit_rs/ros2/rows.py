@@ -82,7 +82,7 @@ class Rows:
         return self.at(slice(*np.searchsorted(self.time, [start, end])))
 
     def __getitem__(self, name: str) -> Floats:
-        """Return the column of a name, (T, width)."""
+        """Return the column ``name``, (T, width)."""
         return self.columns[name]
 
     def __contains__(self, name: str) -> bool:

@@ -53,7 +53,7 @@ def prioritized(is_wanted: bool) -> Iterator[bool]:
         before = os.sched_getscheduler(0), os.sched_getparam(0)
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(os.sched_get_priority_min(os.SCHED_FIFO)))
     except (AttributeError, OSError) as error:
-        reason = getattr(error, "strerror", None) or "only Linux has it"
+        reason = getattr(error, "strerror", None) or "only Linux supports it"
         warnings.warn(
             f"the node runs without real-time priority ({reason}); on Linux, a line such as "
             "'@users - rtprio 1' in /etc/security/limits.conf allows it",

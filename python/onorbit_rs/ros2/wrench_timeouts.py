@@ -18,14 +18,17 @@ class WrenchTimeouts:
         """Begin without wrenches; if ``timeout``, s, is None, they do not end."""
         if timeout is not None and not (isinstance(timeout, Real) and 0.0 < timeout < math.inf):
             raise InputError(
-                f"the timeout of wrenches is {timeout!r} s; it must be positive and finite",
+                f"the timeout of wrenches is {timeout!r} s; it must be a positive and finite number",
                 name="wrench_timeout", got=timeout, expected="a positive number of seconds",
             )  # fmt: skip
         self._timeout = timeout
         self._ends: dict[tuple[str, str], float] = {}
 
     def note(self, entries: Iterable[Mapping[str, Any]], t: float) -> None:
-        """Start the timeout of each non-zero wrench among the commands given at a simulated time, s."""
+        """Start the timeout of each non-zero wrench among the commands given at a simulated time ``t``, s.
+
+        A wrench that is zero ends the timeout of its link.
+        """
         for entry in entries:
             if self._timeout is None or "body" not in entry:
                 continue

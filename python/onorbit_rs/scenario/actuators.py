@@ -95,7 +95,7 @@ def check_actuators(owner: Location, actuators: list[Brake]) -> None:
 
 
 def check_brake(path: str, brakes: dict[str, list[str]]) -> str | None:
-    """Return why ``path`` is not the path ``SYSTEM/BRAKE`` of a brake; None if it is.
+    """Return the reason why ``path`` does not name a brake as ``SYSTEM/BRAKE``; None if it names one.
 
     ``brakes`` contains the names of the brakes of each system.
     """

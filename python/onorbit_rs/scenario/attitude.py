@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from pydantic import model_validator
 
+from onorbit_rs.common.numbers import shortest
 from onorbit_rs.common.rotations import quaternion_from_roll_pitch_yaw
 from onorbit_rs.scenario.errors import invalid
 from onorbit_rs.scenario.fields import Angle3, Number4
@@ -29,7 +30,7 @@ class Attitude(Part):
 
     quaternion_xyzw: Number4 | None = None
     roll_pitch_yaw: Angle3 | None = None
-    """Rotations about the fixed x, y and z axes of the frame, in this order."""
+    """Rotations, rad, about the fixed x, y and z axes of the frame, in this order."""
 
     @model_validator(mode="before")
     @classmethod
@@ -48,7 +49,9 @@ class Attitude(Part):
         if self.quaternion_xyzw is not None:
             norm = math.hypot(*self.quaternion_xyzw)
             if abs(norm - 1.0) > 1e-6:
-                raise invalid(f"the quaternion has norm {norm:.9g}; it must be 1 within 1e-6; normalise it")
+                raise invalid(
+                    f"the quaternion has norm {shortest(norm)}; it must be 1 within 1e-6; normalise it"
+                )
         return self
 
 

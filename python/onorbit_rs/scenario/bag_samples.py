@@ -49,8 +49,8 @@ def read_samples(path: Path, topic: str | None) -> tuple[str, list[Sample]]:
     Raises
     ------
     NotFoundError, ReadError
-        If the file does not exist, is not a bag or is damaged; if the topic is missing or ambiguous; or if it
-        has trajectories, but not exactly one.
+        If the file does not exist, is not a bag or is damaged; if the topic is missing, ambiguous or without
+        joint motion; or if the topic has trajectories, but not exactly one.
     Ros2Error
         If rosbags is not installed.
     """
@@ -108,16 +108,16 @@ def _choice(path: Path, topic: str | None, of_joints: list[str], topics: list[st
         held = ", ".join(topics) or "none"
         raise _error(
             path,
-            "it has no topic with JointState or JointTrajectory messages; give another bag (its topics: "
-            f"{held})",
+            f"it has no topic with JointState or JointTrajectory messages (its topics: {held}); give another "
+            "bag",
         )
     if topic is None:
         if len(of_joints) > 1:
-            raise _error(path, f"it has several topics with joint motions; give one as 'topic': {known}")
+            raise _error(path, f"it has several topics with joint motions ({known}); give one as 'topic'")
         return of_joints[0]
     if topic not in of_joints:
         if topic in topics:
-            raise _error(path, f"topic {topic} contains no joint motions; give one of the topics {known}")
+            raise _error(path, f"topic {topic} contains no joint motions; topics with joint motions: {known}")
         raise _error(path, f"it has no topic {topic!r}{did_you_mean(topic, of_joints)}")
     return topic
 

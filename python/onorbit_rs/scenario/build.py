@@ -67,7 +67,7 @@ def build(scenario: Scenario, *, runs_code: bool = True) -> Built:
     """Return the robot, orbit, initial state and simulation of a scenario, checked with a trial step.
 
     Valid settings that are probably not intended cause warnings. If ``runs_code`` is False, the source of
-    controllers in Python is inspected but not executed, and the simulation must not be run.
+    controllers and effects in Python is inspected but not executed, and the simulation must not be run.
 
     Raises
     ------
@@ -95,7 +95,7 @@ def build_around(
     *,
     runs_code: bool,
 ) -> Built:
-    """Return the simulation of a robot in a given environment, checked with a trial step."""
+    """Return the objects of a scenario after a trial step, given its initial state and environment."""
     (q, v), (orbit, earth, effects) = state, around
     tool = scenario.tracked_tool
     with located(scenario, "tool"):
@@ -141,8 +141,8 @@ def _check_surfaces(scenario: Scenario, model: _core.Model) -> None:
     with located(scenario, "surfaces"):
         if not isinstance(surfaces, dict) and surfaces.kind != "faces" and len(bodies) > 1:
             raise EffectError(
-                f"{surfaces.kind} is the surface of one body, but the robot has {len(bodies)} bodies; give "
-                f"surfaces by link, such as {{{bodies[0]}: {{kind: {surfaces.kind}, …}}}}",
+                f"a surface of kind {surfaces.kind} belongs to one body, but the robot has {len(bodies)} "
+                f"bodies; give surfaces by link, such as {{{bodies[0]}: {{kind: {surfaces.kind}, …}}}}",
                 name="surfaces",
             )
         at_rest = model.neutral(), np.zeros(model.nv)
@@ -215,8 +215,8 @@ def controlled(
 ) -> tuple[Any, Any]:
     """Return new controllers, or None, and the reference of a single controller, or None.
 
-    ``neighbours`` are the other systems of the world. Without them, controls that require other systems are
-    omitted.
+    ``neighbours`` are the systems of the world, by name. Without them, controls that require other systems
+    are omitted.
     """
     folder, tool = scenario.folder, scenario.tool
     start = Start(model, q, orbit, folder, neighbours=neighbours or {})

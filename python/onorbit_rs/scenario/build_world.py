@@ -187,7 +187,7 @@ def _contacts(scenario: WorldScenario) -> Iterator[_core.Contact]:
 
 @contextmanager
 def _located_event(scenario: WorldScenario) -> Iterator[None]:
-    """Add the location of the event that an error of the world names, otherwise ``events`` or ``systems``."""
+    """Locate errors at the event that they name; otherwise at ``events``, or ``systems`` without events."""
     names = [event.name for event in scenario.events]
     at: Location = ("events",) if names else ("systems",)
     try:
@@ -253,7 +253,7 @@ def _is_issued(scenario: WorldScenario, message: str) -> bool:
 
 
 def _warnings(systems: dict[str, Built]) -> Iterator[str]:
-    """Yield the warnings of all systems; warnings about the common orbit are yielded once."""
+    """Yield the warnings of all systems; warnings about the common orbit may repeat and name no system."""
     for name, built in systems.items():
         for message in built.warnings:
             yield message if message.startswith("orbit:") else f"systems.{name}: {message}"

@@ -55,12 +55,16 @@ def location_of(path: str) -> Location:
         at.append(found["key"] if found["index"] is None else int(found["index"]))
         end = found.end()
     if not at or end < len(path):
-        raise _invalid(path, "it is not a path of keys, such as simulation.duration or environment[0].force")
+        raise _invalid(
+            path, "it is not a path of keys; write it like simulation.duration or environment[0].force"
+        )
     return tuple(at)
 
 
 def changed(data: Any, lines: Lines, changes: Changes) -> tuple[Any, Lines]:
     """Return a copy of the data of a scenario with the changes, and the lines of the other entries.
+
+    Mappings that a path contains and the scenario does not are created.
 
     Raises
     ------
@@ -109,7 +113,7 @@ def _entry(inner: Any, step: str | int, path: str, at: Location, following: str 
     if inner.get(step) is None:
         if isinstance(following, int):
             hint = did_you_mean(str(step), inner) or "; set the whole list"
-            raise _invalid(path, f"there is no list {step!r}{hint}")
+            raise _invalid(path, f"the scenario has no list {_written((*at, step))!r}{hint}")
         inner[step] = {}
     return inner[step]
 
@@ -119,17 +123,20 @@ def _index(inner: list[Any], step: str | int, path: str, at: Location) -> int:
     if not isinstance(step, int) or step >= len(inner):
         if not inner:
             raise _invalid(path, f"{_written(at)} is an empty list; set the whole list")
-        what = f"{_written(at) or 'the scenario'} is a list with {len(inner)} entries"
-        raise _invalid(path, f"{what}; give an index from [0] to [{len(inner) - 1}]")
+        what = f"{_written(at) or 'the scenario'} is a list of length {len(inner)}"
+        valid = "the index [0]" if len(inner) == 1 else f"an index from [0] to [{len(inner) - 1}]"
+        raise _invalid(path, f"{what}; give {valid}")
     return step
 
 
 def _not_inside(path: str, at: Location, inner: Any) -> InputError:
-    hint = did_you_mean(str(at[-1]), inner) if at and isinstance(inner, dict) else ""
+    where = _written(at) or "the scenario"
     if at and at[-1] == "robot" and isinstance(inner, str):
-        hint = "; a campaign can vary robot.links and robot.joints, a run takes them from the robot's file"
-    kind = "a mapping" if isinstance(inner, dict) else f"{inner!r:.40}"
-    return _invalid(path, f"{_written(at) or 'the scenario'} is {kind}, which has no such entry{hint}")
+        hint = "a campaign can vary robot.links and robot.joints, a run takes them from the robot's file"
+        return _invalid(path, f"{where} is {inner!r:.40}, which has no such entry; {hint}")
+    if isinstance(inner, dict):
+        return _invalid(path, f"{where} is a mapping, which has no indices{did_you_mean('', inner)}")
+    return _invalid(path, f"{where} is {inner!r:.40}, which has no such entry; set {where} itself")
 
 
 def _written(at: Location) -> str:

@@ -15,16 +15,16 @@ from onorbit_rs.scenario.shape import MostPieces, Shape
 
 
 class CollisionShape(Part):
-    """Collision shape of a link, in addition to those of the robot's file, or the division of its meshes.
+    """Additional collision shape of a link, or division of the link's collision meshes into convex pieces.
 
-    Several shapes form a union.
+    All shapes of a link form a union.
     """
 
     link: str
     """Name of the link."""
     shape: Shape | None = None
     pose: Pose | None = None
-    """Pose of the shape in link axes. Default: the axes coincide."""
+    """Pose of the shape in the frame of the link. Default: the frames coincide."""
     pieces: MostPieces | None = None
     """Instead of ``shape``: largest number of convex pieces into which each collision mesh that the robot's
     file defines for the link is divided."""

@@ -9,6 +9,7 @@ from pydantic import BeforeValidator, Field, ValidationInfo, field_validator, mo
 
 from onorbit_rs import _core
 from onorbit_rs.common.link_patterns import link_pattern
+from onorbit_rs.common.numbers import shortest
 from onorbit_rs.common.suggestions import did_you_mean
 from onorbit_rs.exceptions import QuantityError
 from onorbit_rs.scenario import units
@@ -43,7 +44,7 @@ class HuntCrossley(Part):
     restitution: Number | None = None
     """Coefficient of restitution of a central impact at ``speed``, more than 0 and at most 1."""
     speed: Annotated[Speed, Positive] | None = None
-    """Speed of approach to which ``restitution`` refers."""
+    """Speed of approach, m/s, to which ``restitution`` refers."""
 
     @field_validator("stiffness", mode="before")
     @classmethod
@@ -61,7 +62,7 @@ class HuntCrossley(Part):
     @model_validator(mode="after")
     def _has_one_loss(self) -> Self:
         if self.restitution is not None and not 0.0 < self.restitution <= 1.0:
-            message = f"{self.restitution:g} is out of range; it must be above 0 and at most 1"
+            message = f"{shortest(self.restitution)} is out of range; it must be above 0 and at most 1"
             raise inconsistent("restitution", message)
         if self.restitution is not None and self.dissipation is not None:
             raise inconsistent(
@@ -95,7 +96,7 @@ class SpringDashpot(Part):
 
 
 class Impact(Part):
-    """Impact law of rigid bodies: impacts are instantaneous, and lasting contacts keep their gap."""
+    """Impact law of rigid bodies: impacts are instantaneous, and a lasting contact has a constant gap."""
 
     synonyms: ClassVar = {"e": "restitution", "mu": "friction"}
 
@@ -128,11 +129,12 @@ class Friction(Part):
     kinetic: Annotated[Number, NotNegative] | None = None
     """Coefficient of kinetic friction. Default: the static coefficient."""
     torsional: Annotated[Length, NotNegative] = 0.0
-    """Largest moment about the normal, divided by the normal force. Default: no moment about the normal."""
+    """Largest moment about the normal, divided by the normal force, m. Default: no such moment."""
     stiffness: Annotated[Stiffness, Positive] | None = None
-    """Tangential stiffness. Default: 0.82 times the stiffness of the normal force, at a depth of 0.1 mm."""
+    """Tangential stiffness, N/m. Default: 0.82 times the stiffness of the normal force at 0.1 mm depth."""
     damping: Annotated[Damping, NotNegative] | None = None
-    """Tangential damping inside the friction cone; at least 1 % of critical damping. Default: 10 %."""
+    """Tangential damping inside the friction cone, N s/m; at least 1 % of critical damping. Default: 10 %
+    of critical damping."""
 
     @model_validator(mode="after")
     def _is_consistent(self) -> Self:
@@ -229,7 +231,7 @@ def check_contacts(contacts: list[Contact], systems: list[str]) -> None:
 
 
 def _fault_of_link(link: str, systems: list[str]) -> str:
-    """Return why a pattern cannot match a link; empty if it can."""
+    """Return why a pattern cannot match a link of a system; an empty string if it may match one."""
     system, _, name = link.partition("/")
     if not (system and name) and link != "*":
         return f"{link!r} is not a link of a system; write SYSTEM/LINK, such as {systems[0]}/*"

@@ -41,8 +41,9 @@ def read_table(
     NotFoundError
         If the file does not exist.
     ReadError
-        If a required group or a column of a group is missing, a column is unknown or duplicate, or a cell is
-        not a number; the message contains the line.
+        If the file cannot be read, a required group or a column of a group is missing, a column is unknown or
+        duplicate, the number of cells in a row differs from the header, or a cell is not a number. Messages
+        about the content of the file contain the line.
     """
     reader = csv.reader(read_text(path, LARGEST_TABLE).splitlines())
     rows = [(reader.line_num, row) for row in reader if _is_filled(row)]

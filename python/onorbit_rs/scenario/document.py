@@ -18,7 +18,7 @@ from onorbit_rs.scenario.yaml_lines import Lines, Location, line_of
 
 
 class Document(Part):
-    """Keys of a scenario that do not describe a robot."""
+    """Base class of scenarios with the keys that do not describe a robot."""
 
     name: str = "scenario"
     """Name in results and messages. Default: the name of the file."""
@@ -28,7 +28,8 @@ class Document(Part):
     """Physics engine that integrates the motion of the robot; ``mujoco`` is an independent check.
     The former name of this key is ``plant``."""
     epoch: Epoch | None = None
-    """Time zero with its time scale: ``2024-03-01T12:00:00 UTC``. Default: the epoch of an element set."""
+    """Time zero with its time scale: ``2024-03-01T12:00:00 UTC``. Default: the epoch of an SGP4 orbit, if it
+    is not before 1972."""
     earth: EarthPart | None = None
     """Orientation of the Earth. Default: IAU 2006 if there is an epoch."""
     orbit: Orbit | None = None

@@ -23,8 +23,8 @@ def check_engine(scenario: Scenario) -> None:
     if settings.integrator == "dormand_prince":
         raise inconsistent(
             ("simulation", "integrator"),
-            f"engine {scenario.engine} does not support integrator dormand_prince; use rk4, or engine: "
-            "native",
+            f"engine {scenario.engine} does not support integrator dormand_prince; use integrator: rk4, "
+            "or engine: native",
         )
     if settings.enforce_limits and settings.restitution > 0.0:
         raise inconsistent(
@@ -46,8 +46,8 @@ def check_world_engine(scenario: WorldScenario) -> None:
     for index, contact in enumerate(scenario.contacts):
         if contact.friction is not None and contact.friction.torsional > 0.0:
             message = (
-                f"engine {scenario.engine} limits sliding and torsion by one common cone, so it does not "
-                "support 'torsional'; omit it, or use engine: native"
+                f"engine {scenario.engine} applies one friction cone to sliding and torsion together, so it "
+                "does not support 'torsional'; omit 'torsional', or use engine: native"
             )
             raise inconsistent(("contacts", index, "friction", "torsional"), message)
     for index, event in enumerate(scenario.events):

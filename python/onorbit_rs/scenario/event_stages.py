@@ -21,7 +21,7 @@ class Stage:
     trees: tuple[tuple[str, ...], ...]
     """Names of the systems in each tree; the first is the root."""
     remark: str = ""
-    """Remark on an event that changes no tree; empty if the event changes the trees."""
+    """Remark on the event, such as the reason why it has no effect on the trees; empty if there is none."""
     seating_joints: tuple[int, ...] = ()
     """Number of joints of each tree whose positions are prescribed by a seating in progress."""
 

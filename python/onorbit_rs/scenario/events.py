@@ -43,8 +43,9 @@ def _quantities(*dimensions: Dimension, above_zero: bool = False) -> BeforeValid
 
     def read(value: object) -> list[float]:
         if not isinstance(value, list) or len(value) != len(dimensions):
-            names = ", ".join(dimension.name for dimension in dict.fromkeys(dimensions))
-            raise invalid(f"must be a list of {len(dimensions)} quantities ({names}), not {shortened(value)}")
+            units = ", ".join(dimension.si for dimension in dimensions)
+            given = shortened(value)
+            raise invalid(f"must be a list of {len(dimensions)} quantities with units [{units}], not {given}")
         numbers = [parse_quantity(entry, kind) for entry, kind in zip(value, dimensions, strict=True)]
         for number, kind in zip(numbers, dimensions, strict=True):
             if above_zero and number <= 0.0:
@@ -64,11 +65,12 @@ class Latch(Part):
     """Condition of a capture: limits on the pose and motion of the captured frame in the capturing frame."""
 
     within: Envelope
-    """Largest distance and angle between the frames."""
+    """Largest distance, m, and angle, rad, between the frames."""
     slower_than: EnvelopeRates | None = None
-    """Largest speed as observed in the capturing frame, and largest angular rate. Default: unlimited."""
+    """Largest speed as observed in the capturing frame, m/s, and largest angular rate, rad/s. Default:
+    unlimited."""
     held_for: Annotated[Time, NotNegative] = 0.0
-    """Time for which the conditions must hold without interruption."""
+    """Time, s, for which the conditions must hold without interruption."""
     touching: list[str] = Field(default_factory=list)
     """Names of contacts between both systems that must also touch. Default: none."""
 
@@ -80,7 +82,7 @@ class When(Part):
     after: str | None = None
     """Name of the event after which this event happens."""
     delay: Annotated[Time, NotNegative] = 0.0
-    """Time between the event named in ``after`` and this event."""
+    """Time, s, between the event named in ``after`` and this event."""
     on_command: bool = False
     """Whether the event happens when ``Stepper.trigger`` is called."""
     latch: Latch | None = None
@@ -114,8 +116,8 @@ class Action(Part):
     capture: Annotated[list[str], Field(min_length=2, max_length=2)] | None = None
     """Capturing and captured frame, both written ``SYSTEM/FRAME``."""
     seat: Annotated[Time, Positive] | None = None
-    """Duration of the seating, which moves the captured frame into ``pose`` after the capture. Default: the
-    pose at the capture is kept."""
+    """Duration of the seating, s, which moves the captured frame into ``pose`` after the capture. Default:
+    the pose at the capture is kept."""
     pose: Pose | None = None
     """Nominal pose of the captured frame in the capturing frame. Default: the frames coincide."""
     release: str | None = None
@@ -169,9 +171,9 @@ class Event(Part):
 def check_events(
     events: list[Event], systems: list[str], brakes: dict[str, list[str]], contacts: Sequence[str] = ()
 ) -> None:
-    """Raise an error for unknown or duplicate names, invalid captures, and events that wait for each other.
+    """Raise an error for unknown or duplicate names, invalid actions or latches, and circular ``after`` keys.
 
-    ``brakes`` contains the names of the brakes of each system, and ``contacts`` those of the contacts.
+    ``brakes`` contains the names of the brakes of each system, and ``contacts`` the names of the contacts.
     """
     names = [event.name for event in events]
     by_name = dict(zip(names, events, strict=True))
@@ -195,8 +197,8 @@ def check_events(
         chain = [event.name]
         while (after := by_name[chain[-1]].when.after) is not None:
             if after in chain:
-                circle = ", ".join([*chain[chain.index(after) :], after])
-                message = f"events wait for each other: {circle}; give one of them 'at' instead of 'after'"
+                cycle = ", ".join([*chain[chain.index(after) :], after])
+                message = f"the keys 'after' form a cycle: {cycle}; give one of the events 'at' instead"
                 raise _refusal(index)("when", "after", message=message)
             chain.append(after)
 
@@ -259,5 +261,5 @@ def _check_touching(event: Event, contacts: Sequence[str], refuse: Callable[...,
 def _check_latch(event: Event, refuse: Callable[..., Exception]) -> None:
     if event.when.latch is not None:
         raise refuse(
-            "when", "latch", message="'latch' applies only to captures; give 'at', 'after' or 'on_command'"
+            "when", "latch", message="'latch' applies only to captures; use 'at', 'after' or 'on_command'"
         )

@@ -15,6 +15,7 @@ from pydantic import (
     WrapValidator,
 )
 
+from onorbit_rs.common.numbers import shortest
 from onorbit_rs.exceptions import QuantityError
 from onorbit_rs.scenario import units
 from onorbit_rs.scenario.errors import shortened
@@ -92,9 +93,9 @@ def _drift(value: object) -> float | Literal["never"]:
     try:
         distance = parse_quantity(value, units.LENGTH)
     except QuantityError as error:
-        raise QuantityError(f"{error}; or write 'never'", text=value, expected="a length, or never") from None
+        raise QuantityError(f"{error}, or 'never'", text=value, expected="a length, or never") from None
     if distance < 1.0:
-        message = f"{distance:g} m is too short; give at least 1 m, or 'never'"
+        message = f"{shortest(distance)} m is too short; give at least 1 m, or 'never'"
         raise QuantityError(message, text=value, expected="at least 1 m")
     return distance
 

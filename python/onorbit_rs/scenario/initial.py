@@ -59,9 +59,9 @@ class InitialState(Part):
     position: Length3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
     attitude: Attitude | None = None
     linear_velocity: Speed3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
-    """Velocity of the base's origin relative to ``frame``, in body axes."""
+    """Velocity of the base's origin relative to ``frame``, m/s, in body axes."""
     angular_velocity: AngularRate3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
-    """Angular velocity of the base relative to ``frame``, in body axes."""
+    """Angular velocity of the base relative to ``frame``, rad/s, in body axes."""
     joints: JointPositions = Field(default_factory=list)
     """Joint positions in the order of the model's joints, or by name."""
     joint_rates: JointRates = Field(default_factory=list)
@@ -93,7 +93,7 @@ class InitialState(Part):
         Raises
         ------
         FrameError
-            If a joint does not exist; suggests the nearest name.
+            If a joint does not exist; the message suggests the nearest name.
         ShapeError
             If a list of joints has the wrong length.
         QuantityError

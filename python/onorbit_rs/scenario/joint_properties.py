@@ -81,9 +81,9 @@ class JointProperties(Part):
         Raises
         ------
         FrameError
-            If the robot has no joint of this name; suggests the nearest name.
+            If the robot has no joint of this name; the message suggests the nearest name.
         ModelError
-            If the joint is fixed, or the values do not fit together.
+            If the joint is fixed, or the values are inconsistent.
         QuantityError
             If a value has the unit of the other kind of joint, revolute or prismatic.
         """

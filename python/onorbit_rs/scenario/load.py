@@ -1,4 +1,4 @@
-"""Reads a :class:`Scenario` from a name, a file or a mapping; errors name file, line and key."""
+"""Reads a scenario from a name, a file or a mapping; errors name file, line and key."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def load(
     ----------
     source : str, path, mapping or Scenario
         A bundled name (``"humanoid_reach"``), a YAML file, its content as a mapping, or a scenario, which is
-        returned unchanged.
+        returned as it is unless there are changes.
     changes : mapping, optional
         New values of entries, by path: ``{"simulation.duration": "2 s", "environment[0].kind": "drag"}``.
         Keys that the scenario does not contain are added.
@@ -47,10 +47,11 @@ def load(
     DtypeError
         If ``source`` has another type.
     InputError
-        If a path of ``changes`` cannot be read, or leads through an entry that is not a mapping or a list.
+        If a path of ``changes`` cannot be read, or leads through an entry that is neither a mapping nor a
+        list, or to an entry of a list that does not exist.
     ScenarioError
-        If the scenario is invalid; has the attributes ``file``, ``path`` (the location in the YAML) and
-        ``line``.
+        If the scenario is invalid; the error has the attributes ``file``, ``path`` (the location in the YAML)
+        and ``line``.
     """
     if isinstance(source, (Scenario, WorldScenario)):
         if not changes:

@@ -42,17 +42,20 @@ class Loop(Part):
     between: Annotated[list[str], Field(min_length=2, max_length=2)]
     """The two frames, on different bodies; in a scenario with ``systems``, ``SYSTEM/FRAME`` of one system."""
     pose_a: Pose | None = None
-    """Pose of the joint in the first frame. Default: the axes coincide."""
+    """Pose of the joint in the first frame. Default: the frames coincide."""
     pose_b: Pose | None = None
-    """Pose of the joint in the second frame. Default: the axes coincide."""
+    """Pose of the joint in the second frame. Default: the frames coincide."""
     length: Annotated[Length, Positive] | None = None
-    """Distance of the origins for ``kind: distance``. Default: the distance at zero joint positions."""
+    """Distance of the origins, m, for ``kind: distance``. Default: that at zero joint positions."""
     project: bool = False
     """Whether the run starts in the nearest configuration that closes the loop. If false, a start that does
     not close the loop is an error."""
 
     def of_system(self, system: str) -> Loop | None:
-        """Return the loop with its frames named as in the robot of ``system``; None for another system's."""
+        """Return the loop for the scenario of ``system`` alone; None if it belongs to another system.
+
+        In that scenario, the frames are written without the name of the system.
+        """
         if self.between[0].partition("/")[0] != system:
             return None
         return self.model_copy(update={"between": [path.partition("/")[2] for path in self.between]})
@@ -77,7 +80,7 @@ def check_loops(loops: Sequence[Loop], systems: Sequence[str]) -> None:
         if not loop.name:
             raise inconsistent((*at, "name"), "the name is empty; give the loop a name")
         if loop.name in names[:index]:
-            raise inconsistent((*at, "name"), f"two loops are named {loop.name!r}; give each its own name")
+            raise inconsistent((*at, "name"), f"two loops are named {loop.name!r}; names must be unique")
         if loop.between[0] == loop.between[1]:
             message = f"both frames are {loop.between[0]!r}; give frames of two different bodies"
             raise inconsistent((*at, "between"), message)
@@ -171,9 +174,9 @@ def followed(
             unit = "m" if model.joints[index].kind == "prismatic" else "rad"
             unit += "" if what == "position" else "/s"
             raise InputError(
-                f"the {what} of {joints[index]} is {values[index]:.6g} {unit}, but the joint mimics "
-                f"{leader}, which prescribes {expected:.6g} {unit}; correct the value, or give a mapping of "
-                f"joints without {joints[index]}",
+                f"the {what} of {joints[index]} is {values[index]:.12g} {unit}, but the joint mimics "
+                f"{leader}, which prescribes {expected:.12g} {unit}; correct the value, or give the "
+                f"joints as a mapping without {joints[index]}",
                 name=joints[index],
             )
     return values

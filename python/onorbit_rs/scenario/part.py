@@ -40,7 +40,7 @@ class Part(BaseModel):
 
     @classmethod
     def _hint(cls, key: str, free: list[str]) -> str:
-        """Return the end of the message about an unknown key; suggests keys that are not given yet."""
+        """Return the end of the message about an unknown key, which suggests keys that are not given yet."""
         near = cls.synonyms.get(key.lower()) or nearest(key, free)
         known = [name for name in cls.yaml_keys() if name != "kind"]
         hint = f"; did you mean {near!r}?" if near else ""

@@ -68,7 +68,7 @@ class LinkValues(Part):
 
     mass: Annotated[Mass, Positive] | None = None
     com: Length3 | None = None
-    """Centre of mass in link axes."""
+    """Centre of mass in link axes, m."""
     inertia: InertiaMatrix | None = None
     """Inertia (3, 3), kg m², about the centre of mass in link axes; three numbers are its diagonal."""
 
@@ -176,7 +176,7 @@ class Arm(PlainRobot):
     frame: Name | None = None
     """Mounting frame of the arm. Default: its root link."""
     pose: Pose | None = None
-    """Pose of the mounting frame in ``at``. Default: the axes coincide."""
+    """Pose of the mounting frame in ``at``. Default: the frames coincide."""
     prefix: Name = ""
     """Prefix for the names of the arm's links, joints and frames."""
 
@@ -203,7 +203,7 @@ class Robot(PlainRobot):
                 "'arms' requires 'bus', the robot to which the arms are attached; add 'bus' or omit 'arms'"
             )
         if has_bus and not has_arms:
-            raise invalid("'bus' requires 'arms'; list at least one, each {urdf: FILE, at: FRAME}")
+            raise invalid("'bus' requires 'arms'; list at least one arm as {urdf: FILE, at: FRAME}")
         return value
 
     def build(self, scenario: Scenario) -> _core.Model:

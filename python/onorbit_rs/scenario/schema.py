@@ -60,7 +60,7 @@ class RobotKeys(Part):
 
     @property
     def tracked_tool(self) -> str | None:
-        """Recorded frame: the ``tool`` of the scenario, otherwise the first tool among the controls."""
+        """Recorded frame: the ``tool`` of the scenario, otherwise the first tool of a control, or None."""
         tools = (getattr(control, "tool", None) for control in self.controllers or [])
         return self.tool or next(filter(None, tools), None)
 
@@ -134,8 +134,8 @@ class Scenario(RobotKeys, Document):
         if self.orbit is None:
             for index, effect in enumerate(self.environment):
                 if not isinstance(effect, (BodyWrenchEffect, PythonEffect)):
-                    what = effect.kind.replace("_", " ")
-                    raise inconsistent(("environment", index), f"the {what} requires an orbit; add 'orbit'")
+                    message = f"the effect {effect.kind} requires an orbit; add 'orbit'"
+                    raise inconsistent(("environment", index), message)
             if self.initial.frame in ("lvlh", "path"):
                 raise inconsistent(
                     ("initial", "frame"),

@@ -7,6 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
+from onorbit_rs.common.numbers import shortest
 from onorbit_rs.scenario.errors import inconsistent, invalid
 from onorbit_rs.scenario.fields import Drift, NotNegative, Number, Positive, Time, Whole
 from onorbit_rs.scenario.part import Part
@@ -21,7 +22,7 @@ class ControlSettings(Part):
     """Settings of one robot: control period, joint stops, and tolerance at the start of references."""
 
     control_period: Annotated[Time, Positive] | None = None
-    """Interval between two updates of the controllers. Default: the time step."""
+    """Interval between two updates of the controllers, s. Default: the time step."""
     enforce_limits: bool = False
     """Whether rigid stops keep the joints within their position limits."""
     restitution: Number = Field(default=0.0, ge=0.0, le=1.0)
@@ -41,22 +42,23 @@ class IntegrationSettings(Part):
     }  # fmt: skip
 
     duration: Annotated[Time, Positive]
-    """Duration of the run."""
+    """Duration of the run, s."""
     time_step: Annotated[Time, Positive] = 1e-3
-    """Time step of the integrator."""
+    """Time step of the integrator, s."""
     integrator: Literal["rk4", "semi_implicit_euler", "dormand_prince"] = "rk4"
     """Integration method. ``dormand_prince`` adapts its steps; ``time_step`` is then the interval of the time
     grid."""
     tolerance: Number = Field(default=1e-9, ge=1e-13, le=0.1)
-    """Largest error of a step of ``dormand_prince``, relative to 1 rad, the size of the robot, and its
-    rates."""
+    """Largest relative error of a step of ``dormand_prince``. Errors of angles are relative to 1 rad, those
+    of lengths to the size of the robot or its distance from the origin of W, and those of rates to the
+    magnitude of the rates."""
     record_every: Whole = Field(default=1, ge=1, le=MAX_STEPS)
     """Number of steps between two rows of the trace."""
     record_wrenches: bool = False
     """Whether the trace contains the wrench of every effect on every body."""
     rereference_beyond: Drift = 1e5
-    """Distance from the reference orbit beyond which a robot without a reference in W gets a new reference
-    orbit; or ``never``."""
+    """Distance from the reference orbit, m, beyond which a robot without a reference in W gets a new
+    reference orbit; or ``never``."""
 
     @property
     def steps(self) -> int:
@@ -78,21 +80,27 @@ class IntegrationSettings(Part):
     def _has_valid_steps(self) -> Self:
         if self.time_step > self.duration:
             raise invalid(
-                f"time_step {self.time_step:g} s exceeds the duration of {self.duration:g} s; give a shorter "
-                "'time_step' or a longer 'duration'"
+                f"time_step {shortest(self.time_step)} s exceeds the duration of {shortest(self.duration)} "
+                "s; give a shorter 'time_step' or a longer 'duration'"
             )
         if self.duration / self.time_step > MAX_STEPS:
             raise invalid(
-                f"a duration of {self.duration:g} s with a time_step of {self.time_step:g} s requires "
-                f"{self.duration / self.time_step:.3g} steps; at most {MAX_STEPS:.0e} are permitted; give a "
-                f"'time_step' above {self.duration / MAX_STEPS:.3g} s, or a shorter 'duration'"
+                f"a duration of {shortest(self.duration)} s with a time_step of {shortest(self.time_step)} s "
+                f"exceeds the limit of {MAX_STEPS} steps; give a 'time_step' of at least "
+                f"{_rounded_up(self.duration / MAX_STEPS):.2g} s, or a shorter 'duration'"
             )
         if self.steps / self.record_every > MAX_ROWS:
             raise invalid(
-                f"the trace would have {self.steps / self.record_every:.3g} rows; at most {MAX_ROWS:.0e} are "
-                f"permitted; set 'record_every' to at least {math.ceil(self.steps / MAX_ROWS)}"
+                f"the run would record {math.ceil(self.steps / self.record_every)} steps; at most {MAX_ROWS} "
+                f"are permitted; set 'record_every' to at least {math.ceil(self.steps / MAX_ROWS)}"
             )
         return self
+
+
+def _rounded_up(number: float) -> float:
+    """Return a positive number, rounded up to two significant digits."""
+    unit = 10.0 ** (math.floor(math.log10(number)) - 1)
+    return math.ceil(number / unit) * unit
 
 
 class SimulationSettings(ControlSettings, IntegrationSettings):
@@ -103,8 +111,8 @@ class SimulationSettings(ControlSettings, IntegrationSettings):
         if self.control_period is not None and self.control_period < self.time_step * (1.0 - 1e-9):
             raise inconsistent(
                 "control_period",
-                f"control_period {self.control_period:g} s is shorter than one time_step; give at least "
-                f"{self.time_step:g} s",
+                f"control_period {shortest(self.control_period)} s is shorter than one time_step; give at "
+                f"least {shortest(self.time_step)} s",
             )
         return self
 
@@ -113,7 +121,7 @@ class WorldSettings(IntegrationSettings):
     """Simulation settings of a scenario with ``systems``."""
 
     weld_time_constant: Annotated[Time, Positive] | None = None
-    """Time constant of the connections of ``engine: mujoco``. Default and minimum: two time steps."""
+    """Time constant, s, of the connections of ``engine: mujoco``. Default and minimum: two time steps."""
 
     def arguments(self) -> dict[str, Any]:
         """Return the settings, except ``duration`` and ``weld_time_constant``, as keyword arguments.

@@ -31,7 +31,7 @@ class Box(Part):
 
     kind: Literal["box"]
     size: Annotated[list[Distance], Field(min_length=3, max_length=3)]
-    """Lengths of the edges along x, y and z."""
+    """Lengths of the edges along x, y and z, m."""
 
     def build(self, folder: Path) -> _core.Shape:
         """Return the shape as an object of the engine."""
@@ -56,7 +56,7 @@ class Capsule(Part):
     kind: Literal["capsule"]
     radius: Distance
     length: Distance
-    """Distance between the centres of the caps."""
+    """Distance between the centres of the caps, m."""
 
     def build(self, folder: Path) -> _core.Shape:
         """Return the shape as an object of the engine."""
@@ -68,7 +68,7 @@ class Cone(Part):
 
     kind: Literal["cone"]
     radius: Distance
-    """Radius of the base."""
+    """Radius of the base, m."""
     height: Distance
 
     def build(self, folder: Path) -> _core.Shape:
@@ -81,9 +81,9 @@ class Torus(Part):
 
     kind: Literal["torus"]
     major_radius: Distance
-    """Radius of the circle in the middle of the tube."""
+    """Radius of the circle in the middle of the tube, m."""
     minor_radius: Distance
-    """Radius of the tube, less than ``major_radius``."""
+    """Radius of the tube, m, less than ``major_radius``."""
 
     @model_validator(mode="after")
     def _has_a_hole(self) -> Self:

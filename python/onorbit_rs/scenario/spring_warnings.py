@@ -1,8 +1,8 @@
 """Warnings about springs at joints that are too stiff for the time step.
 
-An oscillation with the angular frequency `ω` is integrated in steps `h`. Per period, RK4 loses the fraction
-`2π (ω h)⁵ / 72` of its energy, and diverges above `ω h = 2 √2`; the semi-implicit Euler method changes its
-frequency by the fraction `(ω h)² / 24`, and diverges above `ω h = 2`.
+An oscillation with the angular frequency `ω` is integrated in steps `h`. RK4 removes the fraction
+`2π (ω h)⁵ / 72` of the energy of the oscillation in each period, and diverges above `ω h = 2 √2`. The
+semi-implicit Euler method changes the frequency by the fraction `(ω h)² / 24`, and diverges above `ω h = 2`.
 
 Source: Hairer, Lubich and Wanner, Geometric Numerical Integration, 2nd ed., 2006 (stability functions).
 """

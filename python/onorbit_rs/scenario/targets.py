@@ -22,7 +22,7 @@ PathFrame = Literal["world", "lvlh", "base"]
 
 @dataclass(frozen=True)
 class Target:
-    """Free-flying spacecraft: pose at time zero, constant velocity and angular velocity, in W and in SI."""
+    """Motion of a free-flying spacecraft in W, in SI: pose at time zero, constant velocity and spin."""
 
     position: Floats
     quat_xyzw: Floats

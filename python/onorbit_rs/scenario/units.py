@@ -131,7 +131,7 @@ def parse_quantity(value: object, *allowed: Dimension) -> float:
 
 
 def split_quantity(value: object) -> tuple[float, str]:
-    """Return the value of a quantity of any dimension in SI, and its unit as written, or an empty string.
+    """Return the value of a quantity of any dimension in SI, and its unit as written; empty without a unit.
 
     Raises
     ------
@@ -142,7 +142,7 @@ def split_quantity(value: object) -> tuple[float, str]:
     if match is None or not match[2]:
         if isinstance(value, str) and match is None:
             raise QuantityError(
-                f"{shortened(value)} is not a number with a unit; write it as 0.5 or '0.5 deg'",
+                f"{shortened(value)} is not a number with a unit; write a value such as 0.5 or '0.5 deg'",
                 text=value, expected="a number",
             )  # fmt: skip
         return parse_quantity(value, NUMBER), ""
@@ -180,7 +180,7 @@ def _parse_unit(unit: str, text: str, allowed: tuple[Dimension, ...]) -> tuple[f
             hint = f" (did you mean {near!r}?)" if near else ""
             raise _refused(text, f"has the unknown unit {name!r}{hint}", allowed)
         if abs(power) > 9:
-            raise _refused(text, f"has a power above 9 in its unit {unit!r}", allowed)
+            raise _refused(text, f"has a power above 9 or below -9 in its unit {unit!r}", allowed)
         signed = -power if operator == "/" else power
         scale, own = _UNITS[name]
         factor *= scale**signed
@@ -207,7 +207,9 @@ def _example_units(dimension: Dimension) -> str:
 def _refused(value: object, why: str, allowed: tuple[Dimension, ...]) -> QuantityError:
     units = "; ".join(filter(None, (_example_units(dimension) for dimension in allowed)))
     si = " or ".join(dict.fromkeys(dimension.si for dimension in allowed if dimension.si))
-    if not units:
+    if not allowed:
+        fix = "give a number, with or without a known unit such as m, kg, s or deg"
+    elif not units:
         fix = "give a number without a unit"
     elif units == si:
         fix = f"give a number, with or without the unit {si}"

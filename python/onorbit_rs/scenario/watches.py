@@ -49,7 +49,7 @@ class KeepOutZone(Part):
     fixed_to: str = "world"
     """Frame of the zone: ``world``, ``lvlh`` (local frame of the reference orbit), or a frame of a robot."""
     pose: Pose | None = None
-    """Pose of the shape in ``fixed_to``. Default: the axes coincide."""
+    """Pose of the shape in ``fixed_to``. Default: the frames coincide."""
 
     def build(self, folder: Path) -> Watch:
         """Return the zone; relative paths start at ``folder``."""
@@ -75,7 +75,7 @@ def check_names(scenario: Document) -> None:
     names: list[str] = []
     for at, part in _parts(scenario):
         if part.name in names:
-            message = f"two zones or distances are named {part.name!r}; give each its own name"
+            message = f"two zones or distances are named {part.name!r}; names must be unique"
             raise inconsistent((*at, "name"), message)
         names.append(part.name)
 
@@ -96,7 +96,8 @@ def build_watches(scenario: Document, models: Mapping[str, _core.Model]) -> list
     Raises
     ------
     OnOrbitError
-        For unknown links, with the location of the entry.
+        For unknown links or frames, a distance without a pair of links to compare, and a zone in ``lvlh``
+        without an orbit; the message contains the location of the entry.
     """
     found = []
     for at, part in _parts(scenario):

@@ -166,8 +166,8 @@ class WorldScenario(Document):
         one = getattr(effect, "surfaces", None)
         if one is not None and one.kind != "faces" and len(self.systems) > 1:
             message = (
-                f"{one.kind} is the surface of one body; give the surface in 'bodies', or in 'surfaces' of a "
-                "system"
+                f"a surface of kind {one.kind} belongs to one body; give the surface in 'bodies', or in "
+                "'surfaces' of a system"
             )
             raise inconsistent(("environment", index, "surfaces"), message)
 
@@ -222,10 +222,10 @@ class WorldScenario(Document):
                 hint = did_you_mean(other[0], list(self.systems))
                 raise inconsistent(at, f"no system is named {other[0]!r}{hint}")
             if other[0] in chain:
-                circle = ", ".join([*chain, other[0]])
+                cycle = ", ".join([*chain, other[0]])
                 raise inconsistent(
                     at,
-                    f"initial states are relative to each other: {circle}; give one of them in another frame",
+                    f"the frames of initial states form a cycle: {cycle}; give one state in another frame",
                 )
             chain.append(other[0])
             other = self.systems[other[0]].initial.neighbour

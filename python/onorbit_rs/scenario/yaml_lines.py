@@ -54,7 +54,8 @@ def read_yaml(path: Path) -> tuple[Any, Lines]:
     NotFoundError, ReadError
         If the file does not exist, is a folder, a pipe or a device, or is not readable.
     ScenarioError
-        If the file is binary, too large, not UTF-8 or not YAML; has the attributes ``file`` and ``line``.
+        If the file is binary, too large, not UTF-8 or not YAML; the error has the attributes ``file``
+        and ``line``.
     """
     return parse_yaml(_read_text(path), path)
 

@@ -25,12 +25,12 @@ class _Stopped(Exception):
 def run_batch(
     simulations: Iterable[Source], duration: float, *, threads: int | None = None
 ) -> Iterator[Trace | WorldTrace]:
-    """Run many simulations on several threads, and return their traces in the order of the simulations.
+    """Run many simulations on several threads, and yield their traces in the order of the simulations.
 
-    A simulation may be that of one robot or of a world with captures, contacts and events. Its result has the
-    same bits as that of :meth:`Simulation.run`, for any number of threads. Simulations are started only as
-    their results are asked for, at most two per thread ahead, so that a generator of any length needs little
-    memory. With ``record_every=`` at least the number of steps, a trace has only the first and the last row.
+    A simulation may be that of one robot or of a world with captures, contacts and events. Each trace has the
+    same bits as that of :meth:`Simulation.run`, for any number of threads. At most two simulations per thread
+    are started before their traces are requested, so that a generator of any length needs little memory. If
+    ``record_every`` is at least the number of steps, a trace has only the first and the last row.
 
     Controllers and effects written in Python hold the GIL and therefore run on one thread at a time.
 
@@ -47,7 +47,7 @@ def run_batch(
     Yields
     ------
     Trace or WorldTrace
-        What :meth:`Simulation.run` returns for each simulation.
+        Trace of each simulation, as from :meth:`Simulation.run`.
 
     Raises
     ------
@@ -66,7 +66,7 @@ def run_batch(
 
 
 def _traces(simulations: Iterator[Source], duration: float, threads: int) -> Iterator[Trace | WorldTrace]:
-    """Yield the traces of the simulations; their runs end with the generator."""
+    """Yield the traces of the simulations; closing the generator ends the runs in progress."""
     stop = threading.Event()
     pool = ThreadPoolExecutor(threads, thread_name_prefix="onorbit-run")
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def write_commands(folder: OutputFolder, commands: Sequence[Command]) -> None:
-    """Write ``commands.jsonl``, from which a run is resumed or repeated."""
+    """Write the commands of a run to ``commands.jsonl``, so that the run can be resumed or repeated."""
     with folder.writing(COMMANDS) as path:
         path.write_text("".join(as_line(command) for command in commands), encoding="utf-8")
 

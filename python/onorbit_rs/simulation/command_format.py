@@ -71,7 +71,8 @@ def checked(entry: Mapping[str, Any], where: str = "") -> Command:
             raise invalid(where, f"'{key}' is {command[key]!r:.60}; it must be a name (text)")
     time: Any = command.get("time")
     if not _is_number(time) or time < 0.0:
-        raise invalid(where, f"'time' is {time!r}; it must be a finite number of seconds, at least 0")
+        given = f"is {time!r}" if "time" in command else "is missing"
+        raise invalid(where, f"'time' {given}; it must be a finite number of seconds, at least 0")
     for key in (*SETPOINT, "values", "force", "torque"):
         if key in command and not _is_array(command[key]):
             raise invalid(where, f"'{key}' must be a list of finite numbers, not {command[key]!r:.60}")
@@ -123,7 +124,7 @@ def read_commands(file: str | os.PathLike[str]) -> list[Command]:
     path = Path(file)
     if not path.is_file():
         raise NotFoundError(
-            f"no such file of commands: {path}; check the path", path=str(path), kind="commands"
+            f"no such file of commands: {path}; give the path of a file", path=str(path), kind="commands"
         )
     content = read_bytes(path, _MOST, "commands")
     try:

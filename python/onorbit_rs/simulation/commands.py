@@ -112,7 +112,7 @@ class CommandLog:
     def apply(self, stepper: Stepper, *entries: Mapping[str, Any]) -> None:
         """Give a stepper a command, and add it to the log with the current time of the stepper.
 
-        Several commands are given and logged together, or none of them if one is refused.
+        Several commands are given and logged together, or none of them if one is rejected.
 
         Parameters
         ----------
@@ -145,7 +145,7 @@ class CommandLog:
                 self._stream.flush()
 
     def close(self) -> None:
-        """Close the file; raises an OutputFolderError if its last command cannot be written."""
+        """Close the file; raise OutputFolderError if its last command cannot be written."""
         stream, self._stream = self._stream, None
         if stream is not None and self._path is not None:
             with output_errors(self._path):

@@ -42,7 +42,7 @@ class Controller(ABC):
         return {name: value for name, value in vars(self).items() if not _is_fixed(value)}
 
     def set_state(self, state: Any) -> None:
-        """Restore the state of a checkpoint; by default sets the attributes that the state contains.
+        """Restore the state of a checkpoint: by default, set the attributes that the state contains.
 
         Parameters
         ----------
@@ -60,8 +60,8 @@ class Controller(ABC):
         t : float
             Simulated time, s.
         state : object with ``q``, ``v`` and ``joints``
-            ``q`` (nq,): base position (m, W), base quaternion xyzw, joints (rad or m);
-            ``v`` (nv,): base twist (m/s and rad/s, body axes), joint rates;
+            ``q`` (nq,): base position (m, W), base quaternion xyzw, joint positions (rad or m);
+            ``v`` (nv,): base twist (m/s and rad/s, body axes), joint rates (rad/s or m/s);
             ``joints``: names of the controlled joints: those of the joint group, otherwise all.
 
         Returns

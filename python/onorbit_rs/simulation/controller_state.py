@@ -30,15 +30,18 @@ def encode(state: object) -> bytes:
     Raises
     ------
     ControlError
-        If the state contains a value that is not plain data; the message names its location, its type and
-        the allowed types.
+        If the state is nested too deeply, or contains a value that is not plain data; the message names the
+        location and the allowed types.
     """
     with suppress(
         RecursionError
     ):  # so that it is not the context of the error below, which programs may pickle
         data = {"format": _FORMAT, "state": _Encoder().encoded(state, "state")}
         return json.dumps(data, allow_nan=False).encode("ascii")
-    raise _refused("state", "is nested too deeply", state)
+    raise ControlError(
+        "state is nested too deeply for a checkpoint; return data with fewer levels from get_state()",
+        name="state", got=_name(type(state)), expected=ALLOWED,
+    )  # fmt: skip
 
 
 def decode(text: bytes) -> Any:
@@ -103,7 +106,7 @@ class _Encoder:
         if type(key) not in _KEYS:
             name, allowed = _name(type(key)), "None, bool, int, float, str or tuple"
             raise ControlError(
-                f"a key of {place} is of type {name}; keys must be {allowed}: convert the key in get_state() "
+                f"a key of {place} is of type {name}; keys must be {allowed}; convert the key in get_state() "
                 "and restore it in set_state()",
                 name=f"a key of {place}", got=name, expected=allowed,
             )  # fmt: skip
@@ -179,7 +182,7 @@ def _name(kind: type) -> str:
 def _refused(place: str, why: str, value: object) -> ControlError:
     hint = " (return the data itself, not a pickle of it)" if isinstance(value, bytes) else ""
     return ControlError(
-        f"{place} {why}{hint}; a checkpoint can contain only {ALLOWED}: return such data from get_state() "
+        f"{place} {why}{hint}; a checkpoint can contain only {ALLOWED}; return such data from get_state() "
         "and restore it in set_state()",
         name=place, got=_name(type(value)), expected=ALLOWED,
     )  # fmt: skip

@@ -134,7 +134,7 @@ def keep_stopped(
 ) -> None:
     """Write the rows of a run that stopped early to ``folder``, if given.
 
-    The message of ``stop`` is extended by the reason and the folder.
+    The message of ``stop`` then states the reason, the folder and, if the run can be resumed, the command.
     """
     if isinstance(stop, SimulationError):
         if isinstance(built, Built):

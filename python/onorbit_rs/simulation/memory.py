@@ -25,7 +25,7 @@ with runs of 8e4 to 4e6 rows.
 """
 
 BASE_ALONE, PER_ROWS_ALONE = 0.12e9, 1.1
-"""The same values for a run that writes no folder, which has no recording."""
+"""The corresponding bytes and factor for all rows of a run without a folder, which has no recording."""
 
 LARGE = 1e9
 """Size of the rows in memory, bytes, above which a warning states the size."""
@@ -83,13 +83,13 @@ def check_size(
 ) -> None:
     """Check that the disk of ``folder`` and the memory have enough space for the rows of a run.
 
-    The memory is checked only if the run keeps its rows in memory. A warning is issued if there are many, in
-    memory or in a file that is not compressed.
+    The memory is checked only if the run keeps its rows in memory. A warning is issued if rows in memory need
+    more than 1 GB, or if rows in a file that is not compressed do.
 
     Raises
     ------
     InputError
-        If they do not fit; the message has a value of ``record_every`` with which they fit.
+        If the rows do not fit; the message has a value of ``record_every`` with which they fit.
     """
     size = estimated_bytes(built)
     if size <= FITTING:
@@ -103,15 +103,14 @@ def check_size(
     needed = estimated_memory(built, has_folder=folder is not None)
     every = _rounded_up(built.scenario.simulation.record_every * size / FITTING)
     what = f"the run records {rows_of(built)} rows, about {_text(size)}"
-    other = (
-        "do not view the run"
-        if is_viewed
-        else "give the run a folder (--out DIR, or out=), to which it writes its rows"
-    )
+    other = "do not view the run"
+    if folder is None:
+        to_disk = "give the run a folder (--out DIR, or out=), to which it writes its rows"
+        other = f"{to_disk}, and {other}" if is_viewed else to_disk
     fix = f"{other}, or set simulation.record_every to {every}, which needs less than 500 MB of memory"
     free = _available_memory()
     if free is not None and needed > free:
-        raise _too_large(f"{what}, and needs about {_text(needed)} of memory, but {_text(free)} are "
+        raise _too_large(f"{what}, and needs about {_text(needed)} of memory, but {_text(free)} is "
                          f"available; {fix}", built, every)  # fmt: skip
     if size > LARGE:
         warn_user(f"{what}, and needs about {_text(needed)} of memory; {fix}")
@@ -131,12 +130,14 @@ def _check_disk(built: Built | BuiltWorld, folder: Path, size: float, compress: 
     space = float(shutil.disk_usage(folder).free)
     needed = size * (1.0 + (COMPRESSED if compress else 1.0))
     if needed > space:
-        every = _rounded_up(built.scenario.simulation.record_every * max(size / FITTING, 4.0 * size / space))
+        every = _rounded_up(
+            built.scenario.simulation.record_every * max(size / FITTING, 4.0 * size / max(space, 1.0))
+        )
         fits = not compress and size * (1.0 + COMPRESSED) <= space
         other = "use --compress (compress=True), " if fits else ""
         raise _too_large(
             f"the run records {rows_of(built)} rows, about {_text(size)}, and needs {_text(needed)} on "
-            f"the disk of {folder}, which has {_text(space)}; free space, {other}or set "
+            f"the disk of {folder}, where {_text(space)} is free; free space, {other}or set "
             f"simulation.record_every to {every}", built, every,
         )  # fmt: skip
 

@@ -7,6 +7,7 @@ from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from onorbit_rs.common.numbers import shortest
 from onorbit_rs.exceptions import InputError
 from onorbit_rs.simulation.command_format import Command, checked, in_order
 from onorbit_rs.simulation.commands import give
@@ -85,9 +86,9 @@ def check_commands(simulation: Simulation, commands: Sequence[Command], duration
         return
     if late := [command for command in commands if command.time > duration]:
         warnings.warn(
-            f"{late[0].where or 'commands'}: commands after the end of the run, {duration:g} s, are not "
-            f"applied ({len(late)} of {len(commands)}); to apply all of them, set the duration of the "
-            f"scenario to at least {late[-1].time:g} s",
+            f"{late[0].where or 'commands'}: commands after the end of the run, {shortest(duration)} s, are "
+            f"not applied ({len(late)} of {len(commands)}); to apply all of them, set the duration of the "
+            f"scenario to at least {shortest(late[-1].time)} s",
             UserWarning,
             stacklevel=3,
         )
@@ -98,7 +99,7 @@ def check_commands(simulation: Simulation, commands: Sequence[Command], duration
         end = None if path is None or "start" not in path else path["start"] + path["times"][-1]
         if end is not None and end < command.time:
             raise InputError(
-                f"{command.where or 'commands'}: the trajectory ends at t = {end:g} s, before the time of "
-                f"the command, {command.time:g} s; give a later 'start'",
+                f"{command.where or 'commands'}: the trajectory ends at t = {shortest(end)} s, before the "
+                f"time of the command, {shortest(command.time)} s; give a later 'start'",
                 name="commands", got=end, expected=command.time,
             )  # fmt: skip

@@ -105,7 +105,7 @@ class Run:
         """
         if isinstance(self.scenario, WorldScenario):
             names = ", ".join(f"models[{name!r}]" for name in self.scenario.systems)
-            raise AttributeError(f"the run has several systems; instead of model, use {names}")
+            raise AttributeError(f"the scenario of the run has 'systems'; instead of 'model', use {names}")
         if self._ran is not None and not isinstance(self._ran, dict):
             return self._ran
         return _loaded(self.scenario, self.summary)
@@ -196,8 +196,8 @@ def run(
     ------
     OnOrbitError
         Before the run starts: for an invalid scenario (``ScenarioError``), a missing file
-        (``NotFoundError``), a command or change that does not fit (``InputError``, ``ControlError``, …), rows
-        that do not fit into the memory or on the disk (``InputError``), or a folder that is not empty, not
+        (``NotFoundError``), an invalid command or change (``InputError``, ``ControlError``, …), rows that
+        need more memory or disk space than is available (``InputError``), or a folder that is not empty, not
         writable or in use by another process (``OutputFolderError``).
     SimulationError
         If the run diverges; the trace before the divergence is in the error and in ``out``.
@@ -254,7 +254,8 @@ def resume(
     Raises
     ------
     CheckpointError
-        If the run has ended, or its scenario, its robot or the version of onorbit_rs has changed.
+        If there is no valid checkpoint, as after the end of the run, or if the scenario, its robot or the
+        version of onorbit_rs has changed.
     OnOrbitError
         As for :func:`run`.
     """

@@ -23,12 +23,13 @@ _LAST_LEAP_SECOND = datetime(2017, 1, 1)
 
 
 def write_oem(run: RecordedRun, file: Path, system: str | None = None) -> None:
-    """Write position, km, and velocity, km/s, of the base's origin in inertial axes.
+    """Write an OEM with the position, km, and velocity, km/s, of the base's origin in inertial axes.
 
     Raises
     ------
     InputError
-        If the run has no orbit around the Earth or no epoch, or ``system`` is not one of its systems.
+        If the run has no orbit around the Earth or no epoch, if its epoch is in UTC and a leap second may
+        occur during the run, or as for :meth:`RecordedRun.columns`.
     OutputFolderError
         If the file cannot be written.
     """
@@ -41,7 +42,7 @@ def write_oem(run: RecordedRun, file: Path, system: str | None = None) -> None:
 
 
 def write_aem(run: RecordedRun, file: Path, system: str | None = None) -> None:
-    """Write the quaternion of the base, from inertial axes to base axes, with the scalar last.
+    """Write an AEM with the quaternion of the base, from inertial axes to base axes, with the scalar last.
 
     Raises
     ------
@@ -108,7 +109,7 @@ def _start(run: RecordedRun, kind: str) -> tuple[datetime, str]:
     Raises
     ------
     InputError
-        If the run has no epoch or no orbit, or a leap second occurs during the run.
+        If the run has no epoch or no orbit, or the epoch is in UTC and a leap second may occur in the run.
     """
     epoch = run.epoch
     if epoch is None or "inertial_axes" not in (run.parts[0] if run.parts else {}):
@@ -119,7 +120,7 @@ def _start(run: RecordedRun, kind: str) -> tuple[datetime, str]:
     if scale == "UTC" and _has_leap_second(start, float(run.summary.get("simulated_s") or 0.0)):
         raise InputError(
             f"a leap second may occur during the run, so {kind} lines in UTC are ambiguous; "
-            "write the epoch in TAI or TT",
+            "give the epoch of the scenario in TAI or TT",
             name=kind.lower(), got=epoch,
         )  # fmt: skip
     return start, scale
@@ -148,7 +149,7 @@ def _center(run: RecordedRun) -> str:
     Raises
     ------
     InputError
-        If it is not the Earth.
+        If the planet is not the Earth.
     """
     if not run.is_about_earth:
         raise InputError(

@@ -17,7 +17,7 @@ def required(package: str, what: str) -> Any:
     Raises
     ------
     NotFoundError
-        If it is not installed; the message contains the command that installs it.
+        If the package is not installed; the message contains the command that installs it.
     """
     if find_spec(package) is None:
         raise NotFoundError(f"{what} requires {package}; to install it: {HINT}", path=package, kind="package")

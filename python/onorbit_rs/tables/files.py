@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def write_csv(run: RecordedRun, file: Path, system: str | None = None) -> None:
-    """Write one line per row; the header has names and units, such as ``tau/elbow [N m]``.
+    """Write a CSV file with one line per row, and a header with units, such as ``tau/elbow [N m]``.
 
     Numbers have all their digits, so that reading them returns the same bits.
 

@@ -35,7 +35,7 @@ class RecordedRun:
     """
 
     def __init__(self, folder: Path) -> None:
-        """Read summary and columns; raises the errors of :func:`read_run`."""
+        """Read summary and columns; the errors are those of :func:`read_run`."""
         self.folder = folder
         self._saved = SavedRun(folder)
         self.summary = self._saved.summary()

@@ -92,7 +92,7 @@ class Arrows:
                 effect.replace("_", " "),
             )
             if 0.0 < ROUNDING * _peak(forces(wrenches)) > _peak(net_force(wrenches)):
-                name = f"differential {name}"  # a carried robot: the common acceleration is removed
+                name = f"differential {name}"  # gravity_mode carried: the common acceleration is removed
             force = _Kind(f"{path}/force", f"{name} force", force_unit, hue.full)
             torque = _Kind.of_moments(f"{path}/torque", f"{name} torque", torque_unit, hue.pale)
             self._send(rows, force, centers, forces(wrenches))

@@ -87,7 +87,7 @@ def log_all_axes(
     size : float
         Size of the robot, m.
     places : pair of (3,) arrays, m
-        Positions of the axes of I and of L in ``follow``.
+        Positions of the axes of I and of L in the frame ``follow``.
     near : float
         Length of the tool's axes in the close-up view of its path, m; 0 omits these axes.
     tool_name_at : (3,) array, m, optional
@@ -123,7 +123,11 @@ def log_compass(
     *,
     in_orbit: bool,
 ) -> None:
-    """Log the axes of I and L beside a robot; ``frames`` are the camera's frame and the inertial frame."""
+    """Log the axes of I and, in an orbit, of L beside a robot.
+
+    ``frames`` are the frame of the camera and the inertial frame; ``places`` are the positions, m, of the
+    axes of I and of L in the frame of the camera.
+    """
     (follow, compass), (inertial, local) = frames, places
     if in_orbit:
         names = ("x L: out", "y L: along track", "z L: normal")

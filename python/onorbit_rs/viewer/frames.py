@@ -71,7 +71,7 @@ def put_in(recording: rr.RecordingStream, path: str, frame: str) -> None:
 
 
 def send_fixed_frames(recording: rr.RecordingStream, setting: Setting) -> None:
-    """Log links that are fixed to another link, the tool, and the frames of captures."""
+    """Log the frames of drawn links that are fixed to another link, of the tool, and of captures."""
     model = setting.model
     moving = set(model.body_names)
     wanted = {shape.link for shape in (*setting.shapes, *setting.collisions)} | {

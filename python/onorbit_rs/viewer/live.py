@@ -94,8 +94,8 @@ class View(ABC):
         except Exception:
             self._is_lost = True
             warnings.warn(
-                "the viewer was closed or stopped responding before it had received the whole run; a "
-                "run with --out DIR also saves a recording",
+                "the viewer was closed or stopped responding before it had received the whole run; to "
+                "also save a recording, run with --out DIR",
                 stacklevel=2,
             )
 
@@ -122,8 +122,8 @@ class View(ABC):
             return
         self._is_lost = True
         warnings.warn(
-            f"the viewer was closed or failed ({error}); the run continues without it; to view it later, "
-            "open its recording with: onorbit show DIR",
+            f"the viewer was closed or failed ({error}); the run continues without the viewer; to view the "
+            "run later, open its recording with: onorbit show DIR",
             stacklevel=2,
         )
 
@@ -199,7 +199,7 @@ def connected_recording(name: str) -> rr.RecordingStream | None:
     """Open a viewer window and return a recording that is sent to it; if that fails, warn and return None."""
     if not has_screen():
         warnings.warn(
-            "no display is available; the run continues without the viewer; to view it later, open its "
+            "no display is available; the run continues without the viewer; to view the run later, open its "
             "recording on a computer with a display: onorbit show DIR",
             stacklevel=2,
         )
@@ -214,8 +214,8 @@ def connected_recording(name: str) -> rr.RecordingStream | None:
         recording.connect_grpc(url)
     except Exception as error:
         warnings.warn(
-            f"the viewer cannot be reached ({error}); the run continues without it; to view it later, "
-            "open its recording with: onorbit show DIR",
+            f"the viewer cannot be reached ({error}); the run continues without the viewer; to view the run "
+            "later, open its recording with: onorbit show DIR",
             stacklevel=2,
         )
         return None

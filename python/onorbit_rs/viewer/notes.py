@@ -20,7 +20,7 @@ _MOST_MESHES = 10
 
 
 def notes(summary: dict[str, Any], scenario: Scenario | WorldScenario) -> str:
-    """Return the summary of a run as Markdown."""
+    """Return name and description of a scenario, and the summary of its run, as Markdown."""
     lines = "\n".join(f"| {escaped(key)} | {escaped(_short(value))} |" for key, value in summary.items())
     about = escaped(" ".join(scenario.description.split()))
     return f"# {escaped(scenario.name)}\n\n{about}\n\n| | |\n|-|-|\n{lines}\n"

@@ -36,7 +36,7 @@ _FIRST_WITHOUT_TOOL = (
 )
 _MOST_IN_A_COLUMN = 4
 _LOW = 4
-"""Relative height of a plot with few lines."""
+"""Smallest relative height of a plot, which suffices for this number of lines."""
 
 _MOST_TICKS = 6.0
 """Largest number of labelled ticks in a low plot."""
@@ -90,7 +90,9 @@ def _plot(series: Series, duration_s: float, *, is_live: bool) -> rrb.TimeSeries
 
 
 def with_two_ticks(values: Floats) -> tuple[float, float] | None:
-    """Return a value range with two labelled ticks for a low plot; None if the default range suffices.
+    """Return a value range with two labelled ticks for a low plot; None if the default range is better.
+
+    The default range is better if it has two ticks, or if the values are constant or not finite.
 
     Rerun places ticks only at multiples of powers of ten, and omits ticks that are close to each other.
     """

@@ -60,7 +60,7 @@ MOST_STEPS = 500_000
 
 @releases_streams
 def write_recording(path: Path, trace: Trace, setting: Setting, *, notes: str = "") -> Path:
-    """Write a recording of a run that ``rerun PATH`` opens.
+    """Write a recording of a run, which ``rerun PATH`` opens, and return its path.
 
     Parameters
     ----------
@@ -77,6 +77,8 @@ def write_recording(path: Path, trace: Trace, setting: Setting, *, notes: str = 
     ------
     OSError
         If the file cannot be written.
+    ViewerError
+        If rerun did not encode the recording completely.
     """
     chosen = recorded_rows(len(trace.time))
     rows = TraceRows.of_trace(trace, slice(None) if len(chosen) == len(trace.time) else chosen)

@@ -38,7 +38,7 @@ def open_recording(recording: Path) -> None:
     Raises
     ------
     ViewerError
-        If the viewer ended before it opened a window.
+        If the viewer cannot be started, ends before it opens a window, or does not respond within 20 s.
     """
     _start(free_port(), str(recording))
 
@@ -49,7 +49,7 @@ def open_viewer() -> str:
     Raises
     ------
     ViewerError
-        If the viewer ended before it opened a window.
+        If the viewer cannot be started, ends before it opens a window, or does not respond within 20 s.
     """
     port = free_port()
     _start(port, "--expect-data-soon")

@@ -81,8 +81,8 @@ def series_of(rows: TraceRows, setting: Setting, *, is_live: bool = False) -> It
 def fitted_unit(series: Series) -> Series:
     """Return the series in a unit that suits its peak.
 
-    Rerun's axes show four decimals and no exponents. A peak below the rounding error gives zeros; exact
-    columns and labels with two units keep their unit.
+    Rerun's axes show four decimals and no exponents. A peak below the rounding error gives zeros. Inertial
+    positions and velocities, and plots whose label has two units, keep their unit.
     """
     peak = float(max(series.values.max(initial=0.0), -series.values.min(initial=0.0)))
     if peak < (np.degrees(ROUNDING) if series.unit == "deg" else ROUNDING):

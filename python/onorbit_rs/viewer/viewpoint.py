@@ -32,7 +32,7 @@ _POSES = 12
 
 @dataclass(frozen=True)
 class Viewpoint:
-    """Size and centre of the robot in ``follow``, m, which determine the position of the camera."""
+    """Size and centre of the robot, m, in the frame ``follow``; they determine the camera's position."""
 
     size: float
     center: Floats
@@ -59,7 +59,10 @@ class Viewpoint:
         return cls(size, center, rot_fb)
 
     def place(self, right: float, up: float, behind: float = 0.0) -> Floats:
-        """Return a point in ``follow``, m, given screen coordinates in units of the robot's size."""
+        """Return the position (3,) of a point in the frame ``follow``, m.
+
+        Its coordinates on the screen, and behind the centre of the robot, are in units of the robot's size.
+        """
         x, y, z = self.sight()
         place: Floats = self.center + self.size * (right * x + up * y - behind * z)
         return place
@@ -91,15 +94,15 @@ class Viewpoint:
 
     @property
     def inertial_at(self) -> Floats:
-        """Position of the axes of I in ``follow``, m."""
+        """Position (3,) of the axes of I in the frame ``follow``, m."""
         return self.place(-0.8, 0.32)
 
     @property
     def base_at(self) -> Floats:
-        """Position (3,) of the axes of the base in ``follow``, m, beside the robot."""
+        """Position (3,) of the axes of the base in the frame ``follow``, m, beside the robot."""
         return self.place(-0.8, -0.02)
 
     @property
     def local_at(self) -> Floats:
-        """Position of the axes of L in ``follow``, m."""
+        """Position (3,) of the axes of L in the frame ``follow``, m."""
         return self.place(-0.8, -0.36)

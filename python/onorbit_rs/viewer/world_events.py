@@ -99,7 +99,7 @@ def send_events(
     duration_s: float,
     first: int = 0,
 ) -> None:
-    """Send the log, the states of the connections, and marks in the 3-D view, from event ``first`` on."""
+    """Send the log, the states of connections and contacts, and marks in 3-D, from event ``first`` on."""
     new = events[first:]
     if not new:
         return
@@ -224,7 +224,10 @@ def _shown_before(event: EventRecord, earlier: Sequence[EventRecord], shown_s: f
 def _send_label(
     recording: rr.RecordingStream, event: EventRecord, place: Floats, color: Color, shown_s: float
 ) -> None:
-    """Show the name, the impulse and the lost energy of an event above the scene for ``shown_s``, s."""
+    """Show a label with the name and the kind of an event above the scene for ``shown_s``, s.
+
+    Unless the event is a touch-down, the label also contains its linear impulse and the energy lost.
+    """
     path = f"world/lvlh/events/{event.name}"
     put_in(recording, path, FOLLOW)
     size = float(np.linalg.norm(event.impulse[:3]))

@@ -78,7 +78,7 @@ class Stage:
 
 @releases_streams
 def write_world_recording(path: Path, trace: WorldTrace, setting: WorldSetting, *, notes: str = "") -> Path:
-    """Write a recording of a run with several systems that ``rerun PATH`` opens.
+    """Write a recording of a run with several systems, which ``rerun PATH`` opens, and return its path.
 
     Parameters
     ----------
@@ -95,6 +95,8 @@ def write_world_recording(path: Path, trace: WorldTrace, setting: WorldSetting, 
     ------
     OSError
         If the file cannot be written.
+    ViewerError
+        If rerun did not encode the recording completely.
     """
     most = MOST_STEPS // len(setting.systems)
     world = WorldRows.of_trace(trace, setting, most)
@@ -147,7 +149,7 @@ def log_world(
     has_events: bool = False,
     is_live: bool = False,
 ) -> Stage:
-    """Send the layout and log the static entities, which depend on the first rows only."""
+    """Send the layout, log the static entities and return the viewpoints, all from the first rows only."""
     setting, bodies = world.setting, bodies_of(world)
     stage = Stage.of(world, is_live=is_live)
     send_blueprint(
@@ -199,7 +201,7 @@ def bodies_of(world: WorldRows) -> list[Body]:
 
 
 def _events_of(series: Series, setting: WorldSetting, events: Sequence[EventRecord]) -> list[EventRecord]:
-    """Return the events that a plot shows: those between its systems, or the touches of its contact."""
+    """Return the events between the systems of a plot; plots of a contact omit touches of other contacts."""
     systems = set(setting.names)
     for connection in setting.connections:
         if series.path.startswith(f"{SHARED}connections/{connection.name}/"):

@@ -24,7 +24,7 @@ pub struct Wrenches<'a> {
     pub rows: &'a [f64],
 }
 
-/// Call of a kernel: the kernel, the robot and the inputs.
+/// Kernel that is evaluated, with the robot and the inputs.
 #[derive(Clone, Copy)]
 pub(super) struct Call<'a> {
     pub(super) kernel: Kernel,

@@ -54,7 +54,8 @@ impl Evaluator {
     }
 
     /// Checks the shapes of inputs and outputs, and computes many states. The results are bit-identical for
-    /// any number of threads.
+    /// any number of threads. If `threads` is stopped, the function returns early, without an error and with
+    /// incomplete outputs.
     ///
     /// # Errors
     /// [`InputError`] for the first invalid input in the order of the arguments, or for the first result that
@@ -131,7 +132,7 @@ fn first_fault(call: &Call<'_>, outputs: &[RowsMut<'_>]) -> Result<(), InputErro
     for (name, rows) in call.kernel.inputs().iter().zip(call.inputs) {
         check_finite(name, rows.data, rows.width)?;
         if name.starts_with('q') {
-            check_quaternions(rows.data, rows.width)?;
+            check_quaternions(name, rows.data, rows.width)?;
         }
     }
     for wrenches in call.external {

@@ -3,7 +3,7 @@
 use super::call::{Call, RowsMut, Wrenches};
 use super::kernels::Kernel;
 use crate::model::{Model, QUATERNION};
-use crate::number_text::{count, indices, short, unlike};
+use crate::number_text::{choice, count, short, unlike};
 use crate::orbit::OrbitError;
 use thiserror::Error;
 
@@ -13,10 +13,21 @@ use thiserror::Error;
 pub enum InputError {
     #[error("the array '{name}' has {got} per state; expected {expected} for this robot", got = count(*got, "number"))]
     WrongLength { name: &'static str, expected: usize, got: usize },
-    #[error("the array '{name}' has {got}, but the first argument has {expected}; give the same number of states", got = count(*got, "state"))]
+    #[error("the array '{name}' has {got}; expected {expected}", got = count(*got, "number"))]
+    WrongTotal { name: &'static str, expected: usize, got: usize },
+    #[error(
+        "the array '{name}' has {got}, but the first argument has {expected}; give one row per state",
+        got = count(*got, "row"), expected = count(*expected, "state")
+    )]
     WrongBatch { name: &'static str, expected: usize, got: usize },
     #[error("the array '{name}' has {got}; expected a multiple of {width}, which is the length of a row", got = count(*got, "number"))]
     Ragged { name: &'static str, width: usize, got: usize },
+    #[error(
+        "the array 'times' has {got}, which is not a multiple of the number of orbits, {orbits}; give the \
+         same number of times for each orbit",
+        got = count(*got, "number")
+    )]
+    UnevenTimes { orbits: usize, got: usize },
     #[error("the number of {what} is {got}; this function requires {expected}")]
     WrongCount { what: &'static str, expected: usize, got: usize },
     #[error("output {output} holds {got}; it must hold {expected}", got = count(*got, "number"))]
@@ -25,20 +36,25 @@ pub enum InputError {
     NotSingle { got: usize },
     #[error(
         "frame {frame} does not exist; the robot has {known}",
-        known = indices(*count, "frame")
+        known = choice(*count, "frame")
     )]
     UnknownFrame { frame: usize, count: usize },
-    #[error("{name} holds {value} in state {state}; it must be finite", value = short(*value))]
+    #[error(
+        "the array '{name}' holds {value} in state {state}; expected finite numbers",
+        value = short(*value)
+    )]
     NotFinite { name: &'static str, state: usize, value: f64 },
     #[error(
-        "the quaternion of state {state} has norm {norm}; it must be 1 within 1e-6; normalise q[3:7], which is x, y, z, w",
+        "the quaternion {name}[3:7] (x, y, z, w) of state {state} has norm {norm}; it must be 1 within \
+         1e-6; normalise it",
         norm = unlike(*norm, &[1.0])
     )]
-    QuaternionNorm { state: usize, norm: f64 },
+    QuaternionNorm { name: &'static str, state: usize, norm: f64 },
     #[error(
-        "the mass matrix of state {state} is singular: in this configuration, some motion of the joints moves no \
-         inertia; give the massless links an inertia, or the joints a rotor_inertia. If the state contains very large \
-         values, their products may have overflowed instead; check their units"
+        "the result for state {state} is not finite: either the mass matrix is singular, because some \
+         motion of the joints moves no inertia in this configuration, or products of very large values \
+         overflow; give the massless links an inertia, or the joints a rotor_inertia, and check the units \
+         of the state"
     )]
     Singular { state: usize },
     #[error("the values of state {state} are so large that their products overflow; check their units")]
@@ -60,14 +76,24 @@ pub enum InputError {
     #[error("threads is 0; it must be at least 1; omit it to use all cores")]
     NoThreads,
     #[error(
-        "state {state} diverged: it is no longer finite; reduce time_step, the initial rates, the gains or the joint \
-         damping"
+        "the run from state {state} diverged: its positions or rates are no longer finite; reduce time_step, \
+         the initial rates, the gains or the joint damping"
     )]
     Diverged { state: usize },
     #[error("orbit {orbit}: {source}")]
     Orbit { orbit: usize, source: OrbitError },
-    #[error("{name} is {value} in state {state}; it must be {expected}", value = short(*value))]
-    NotAnEllipse { name: &'static str, state: usize, value: f64, expected: &'static str },
+    /// An element, of one state or of all states, that does not describe an ellipse.
+    #[error(
+        "{name} is {value}{of_state}; it must be {expected}",
+        value = short(*value), of_state = state.map_or_else(String::new, |state| format!(" in state {state}"))
+    )]
+    NotAnEllipse { name: &'static str, state: Option<usize>, value: f64, expected: &'static str },
+    #[error(
+        "the array '{name}' has {got}; expected 1 for all states{each}",
+        got = count(*got, "number"),
+        each = if *states == 1 { String::new() } else { format!(", or {states}, one per state") }
+    )]
+    WrongElements { name: &'static str, states: usize, got: usize },
 }
 
 /// Largest accepted deviation of the norm of a quaternion from 1.
@@ -86,8 +112,11 @@ pub(super) fn check_shapes(call: &Call<'_>, outputs: &[RowsMut<'_>]) -> Result<(
             return Err(InputError::WrongLength { name, expected, got: rows.width });
         }
         if rows.data.len() != count * expected {
+            if expected == 0 {
+                return Err(InputError::WrongTotal { name, expected, got: rows.data.len() });
+            }
             check_whole(name, rows.data, expected)?;
-            let got = rows.data.len() / expected.max(1); // the width is 0 for a robot without joints
+            let got = rows.data.len() / expected;
             return Err(InputError::WrongBatch { name, expected: count, got });
         }
     }
@@ -109,6 +138,7 @@ pub(super) fn check_shapes(call: &Call<'_>, outputs: &[RowsMut<'_>]) -> Result<(
     }
     for Wrenches { rows, .. } in call.external {
         if rows.len() != 6 && rows.len() != 6 * count {
+            check_whole("external wrench", rows, 6)?;
             let got = rows.len() / 6;
             return Err(InputError::WrongBatch { name: "external wrench", expected: count, got });
         }
@@ -140,12 +170,12 @@ pub(super) fn check_finite(name: &'static str, data: &[f64], width: usize) -> Re
     Err(InputError::NotFinite { name, state: index / width.max(1), value: data[index] })
 }
 
-/// Checks that the quaternion of each configuration has unit norm within [`UNIT_NORM`].
-pub(super) fn check_quaternions(q: &[f64], nq: usize) -> Result<(), InputError> {
+/// Checks that the quaternion of each configuration in the array `name` has unit norm within [`UNIT_NORM`].
+pub(super) fn check_quaternions(name: &'static str, q: &[f64], nq: usize) -> Result<(), InputError> {
     for (state, row) in q.chunks_exact(nq).enumerate() {
         let norm = row[QUATERNION].iter().map(|x| x * x).sum::<f64>().sqrt();
         if (norm - 1.0).abs() > UNIT_NORM {
-            return Err(InputError::QuaternionNorm { state, norm });
+            return Err(InputError::QuaternionNorm { name, state, norm });
         }
     }
     Ok(())

@@ -31,7 +31,7 @@ pub fn kepler_states<'a>(
     check_elements(&elements, mu, count)?;
     if velocities.len() != positions.len() {
         let (expected, got) = (positions.len(), velocities.len());
-        return Err(InputError::WrongLength { name: "velocities", expected, got });
+        return Err(InputError::WrongTotal { name: "velocities", expected, got });
     }
     match InstructionSet::current() {
         InstructionSet::Baseline => compute_all::<f64>(elements, mu, positions, velocities, threads),
@@ -46,7 +46,7 @@ const NAMES: [&str; 7] =
 fn check_elements(elements: &[&[f64]; 7], mu: f64, count: usize) -> Result<(), InputError> {
     for (name, values) in NAMES.into_iter().zip(elements) {
         if values.len() != count && values.len() != 1 {
-            return Err(InputError::WrongLength { name, expected: count, got: values.len() });
+            return Err(InputError::WrongElements { name, states: count, got: values.len() });
         }
         check_finite(name, values, 1)?;
     }
@@ -54,7 +54,10 @@ fn check_elements(elements: &[&[f64]; 7], mu: f64, count: usize) -> Result<(), I
         .iter()
         .position(|&value| !is_valid(value))
     {
-        Some(state) => Err(InputError::NotAnEllipse { name, state, value: values[state], expected }),
+        Some(index) => {
+            let state = (values.len() > 1).then_some(index);
+            Err(InputError::NotAnEllipse { name, state, value: values[index], expected })
+        }
         None => Ok(()),
     };
     check("mu", &[mu], |mu| mu > 0.0 && mu.is_finite(), "positive and finite (m³/s²)")?;

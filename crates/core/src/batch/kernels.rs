@@ -141,7 +141,7 @@ impl Kernel {
         (widths, used.len())
     }
 
-    /// Computes the outputs for the states in the lanes of `S`, which is a single state for a scalar.
+    /// Computes the outputs for one state per lane of `S`.
     pub(super) fn evaluate<S: Real>(
         self,
         model: &Model,

@@ -23,7 +23,7 @@ pub(super) fn check(
 }
 
 /// Simulates one run with computed torque of all joints, and writes the recorded states to `q`, `(rows, nq)`,
-/// and `v`, `(rows, nv)`. Requires [`check`].
+/// and `v`, `(rows, nv)`. [`check`] must have accepted the law.
 pub(super) fn run<S: Scalar>(lanes: &mut Lanes<'_, S>, q: &mut [f64], v: &mut [f64]) {
     let RolloutControl::ComputedTorque(law, reference) = lanes.settings.control else { return };
     let model = only(&lanes.equations.trees).model.clone();

@@ -1,6 +1,6 @@
 //! Propagation of many orbits to many times.
 
-use super::input::{InputError, check_whole};
+use super::input::InputError;
 use super::threads::{Threads, for_each};
 use crate::orbit::{Orbit, OrbitError, StateRows};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -23,11 +23,12 @@ const STEPS: usize = 16;
 /// Computes positions (m) from the planet's centre and velocities (m/s) of `orbits`, each (N, T, 3),
 /// row-major. The states of an orbit are in the inertial axes of that orbit.
 ///
-/// The results are bit-identical for any number of threads.
+/// The results are bit-identical for any number of threads. If `threads` is stopped, the function returns
+/// early with incomplete results.
 ///
 /// # Errors
-/// [`InputError::NoThreads`], [`InputError::WrongLength`] and [`InputError::Ragged`] for invalid arguments,
-/// and [`InputError::Orbit`] for the first orbit that has no state at one of its times.
+/// [`InputError::NoThreads`], [`InputError::WrongTotal`] and [`InputError::UnevenTimes`] for invalid
+/// arguments, and [`InputError::Orbit`] for the first orbit that has no state at one of its times.
 pub fn propagate<'a>(
     orbits: &[Arc<dyn Orbit>],
     times: Times<'_>,
@@ -39,14 +40,16 @@ pub fn propagate<'a>(
     let count = match times {
         Times::Common(times) => times.len(),
         Times::Each(times) => {
-            check_whole("times", times, orbits.len())?;
+            if !times.len().is_multiple_of(orbits.len().max(1)) {
+                return Err(InputError::UnevenTimes { orbits: orbits.len(), got: times.len() });
+            }
             times.len() / orbits.len().max(1)
         }
     };
     let expected = 3 * orbits.len() * count;
     for (name, got) in [("positions", positions.len()), ("velocities", velocities.len())] {
         if got != expected {
-            return Err(InputError::WrongLength { name, expected, got });
+            return Err(InputError::WrongTotal { name, expected, got });
         }
     }
     if expected == 0 {

@@ -37,16 +37,20 @@ impl Rollout<'_> {
             [("q0", q0.len(), nq), ("v0", v0.len(), nv), ("q", q.len(), rows * nq), ("v", v.len(), rows * nv)]
         {
             if got != count * expected {
-                return Err(InputError::WrongLength { name, expected, got: got / count.max(1) });
+                return Err(InputError::WrongTotal { name, expected: count * expected, got });
             }
         }
         check_finite("q0", q0, model.nq())?;
         check_finite("v0", v0, model.nv())?;
-        check_quaternions(q0, model.nq())?;
+        check_quaternions("q0", q0, model.nq())?;
         if let RolloutControl::Torques(tau) = self.control {
             let expected = self.steps * model.joint_count();
             if tau.len() != count * expected {
-                return Err(InputError::WrongLength { name: "tau", expected, got: tau.len() / count.max(1) });
+                return Err(InputError::WrongTotal {
+                    name: "tau",
+                    expected: count * expected,
+                    got: tau.len(),
+                });
             }
             check_finite("tau", tau, expected)?;
         }

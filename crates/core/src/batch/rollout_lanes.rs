@@ -74,7 +74,7 @@ impl<'a, S: Real> Lanes<'a, S> {
     }
 
     /// Simulates the group of runs and writes the recorded states to `q`, `(count, rows, nq)`, and `v`,
-    /// `(count, rows, nv)`. `drive` sets the motor torques for a step (index).
+    /// `(count, rows, nv)`. `drive` sets the motor torques of the step with the given index.
     pub(super) fn run(&mut self, q: &mut [f64], v: &mut [f64], mut drive: impl FnMut(&mut Self, usize)) {
         let Rollout { steps, time_step, record_every, .. } = *self.settings;
         let mut row = 0;
@@ -111,7 +111,8 @@ impl<'a, S: Real> Lanes<'a, S> {
         }
     }
 
-    /// Computes the motor torques of all runs of the group for step `step`.
+    /// Sets the motor torques of all runs of the group for the step with index `step`. Without control, they
+    /// do not change.
     pub(super) fn drive(&mut self, step: usize) {
         let Self { equations, state, settings, work, first, count, .. } = self;
         let (tree, state) = (only_mut(&mut equations.trees), only(&state.trees));

@@ -31,8 +31,9 @@ impl Threads<'_> {
 
 /// Runs `task` for every element until the batch is stopped, with one workspace per thread.
 ///
-/// The number of threads is at most the number of elements and the number of processors. A single thread is
-/// the calling thread. The elements are generated on demand, so a long batch needs no memory in advance.
+/// The number of threads is at most the number of elements and the number of processors. A batch with a
+/// single thread runs on the calling thread. The elements are generated on demand, so a long batch needs no
+/// memory in advance.
 ///
 /// # Errors
 /// [`InputError::NoThreads`] for zero threads.

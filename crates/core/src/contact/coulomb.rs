@@ -12,10 +12,10 @@ pub(crate) const MOST_SWEEPS: usize = 4000;
 /// accepted although the iteration has not reached [`EXACT`].
 const ACCEPTED: f64 = 1e-9;
 
-/// Error of an iteration for the impulses that has not converged.
+/// Error: the iteration for the impulses did not converge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Unsolved {
-    /// Largest change of a velocity in the last sweep, m/s.
+    /// Largest change of a velocity in the last sweep, m/s (rad/s at the stop of a revolute joint).
     pub(crate) change: f64,
 }
 
@@ -82,7 +82,7 @@ impl ImpulseProblem {
         products.fold(self.free[row], |sum, (w, p)| w.mul_add(*p, sum))
     }
 
-    /// Returns the change of the kinetic energy, J: `½ pᵀ (b + u)`.
+    /// Returns the change of the kinetic energy that the impulses `p`, `(n,)`, cause, J: `½ pᵀ (b + u)`.
     pub(crate) fn energy(&self, p: &[f64]) -> f64 {
         let u = self.velocities(p);
         0.5 * p.iter().zip(self.free.iter().zip(&u)).map(|(p, (b, u))| p * (b + u)).sum::<f64>()
@@ -155,8 +155,8 @@ impl ImpulseProblem {
         problem.solve(&mut p).map(|()| p)
     }
 
-    /// Returns the impulses of an impact that does not create energy, and the factor, from 0 to 1, by which the
-    /// restitution is reduced for this purpose.
+    /// Returns the impulses of an impact that does not create energy, and the factor, from 0 to 1, by which
+    /// the restitution is multiplied for this purpose.
     ///
     /// Together with friction, restitution can create energy if there are several points, or if the normal and
     /// tangential motions of a point are coupled. All targets are then multiplied by the largest factor below 1

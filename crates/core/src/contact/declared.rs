@@ -20,7 +20,8 @@ pub struct ContactLaw {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactSteps {
     /// Number of steps in half a period of the fastest oscillation of a contact. An elastic impact with a
-    /// linear force lasts half a period.
+    /// linear force lasts half a period. Contacts near rest use fewer steps, but at least 8, or this number
+    /// if it is smaller.
     pub count: usize,
     /// True if steps are shortened near touch-down and lift-off for exponents between 1 and 4, where equal
     /// steps reduce the order of the integrator.

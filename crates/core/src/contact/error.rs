@@ -1,13 +1,16 @@
 //! Errors of contacts.
 
 use crate::geometry::GeometryError;
-use crate::number_text::short;
+use crate::number_text::{count, exact, short, unlike};
 
 /// Error in the declaration of a contact, or in its evaluation during a run.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ContactError {
     /// A parameter is outside its range.
-    #[error("the {name} of a contact is {got}{unit}; it must be {range}{unit}", got = short(*got), unit = with_space(unit))]
+    #[error(
+        "the {name} of a contact is {got}{unit}; it must be {range}{unit}",
+        got = exact(*got), unit = with_space(unit)
+    )]
     Parameter {
         /// Name of the parameter.
         name: &'static str,
@@ -71,7 +74,7 @@ pub enum ContactError {
         may_be_permitted: bool,
     },
     /// A contact has an impact law and a setting that cannot be combined with it.
-    #[error("contact '{contact}': an impact law excludes {what}")]
+    #[error("contact '{contact}': an impact law cannot be combined with {what}")]
     ImpactLaw {
         /// Name of the contact.
         contact: String,
@@ -85,7 +88,7 @@ pub enum ContactError {
          overlapping: the friction coefficient {friction} is above {limit}, the value at which friction pushes the \
          links into each other as fast as the normal force separates them (Painlevé's paradox); use a compliant \
          normal force, such as HuntCrossley, or a smaller friction coefficient",
-        friction = short(*friction), limit = short(*limit)
+        friction = unlike(*friction, &[*limit]), limit = short(*limit)
     )]
     Painleve {
         /// Name of the contact.
@@ -99,19 +102,19 @@ pub enum ContactError {
     },
     /// The iteration for the impulses or forces of rigid contacts did not converge.
     #[error(
-        "contact {contacts}: the impulses at {points} rigid points did not converge; the last of {sweeps} sweeps \
-         changed a velocity by {change} m/s; use a compliant normal force, such as HuntCrossley, for the \
-         contacts within long rows or stacks of bodies",
-        change = short(*change)
+        "{contacts}: the impulses at {points} did not converge, because the last of {sweeps} sweeps \
+         still changed a velocity by {change} m/s (rad/s at the stop of a revolute joint); use a compliant \
+         normal force, such as HuntCrossley, for the contacts within long rows or stacks of bodies",
+        points = count(*points, "rigid point"), change = short(*change)
     )]
     Unsolved {
-        /// Names of the contacts, as text.
+        /// Names of the contacts with the noun, such as `contact 'hull'`.
         contacts: String,
         /// Number of points of contact.
         points: usize,
         /// Number of sweeps over all points.
         sweeps: usize,
-        /// Largest change of a velocity in the last sweep, m/s.
+        /// Largest change of a velocity in the last sweep, m/s (rad/s at the stop of a revolute joint).
         change: f64,
     },
     /// A shape is invalid, or the distance between two shapes could not be computed.
@@ -151,5 +154,5 @@ pub(super) fn at_least(
     if got >= least && got.is_finite() {
         return Ok(());
     }
-    Err(ContactError::Parameter { name, got, range: format!("finite and at least {}", short(least)), unit })
+    Err(ContactError::Parameter { name, got, range: format!("finite and at least {}", exact(least)), unit })
 }

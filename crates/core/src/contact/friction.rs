@@ -1,6 +1,7 @@
 //! Elastic-plastic friction of a contact.
 
 use super::error::{ContactError, at_least, positive};
+use crate::number_text::exact;
 use crate::spatial::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -65,12 +66,13 @@ impl Friction {
     /// the elastic displacement `moved`, m, of the bristles from `start`. The displacement is the integral of
     /// [`FrictionForce::elastic_rate`]. All vectors are tangential.
     ///
-    /// With the deflection `z`, the velocity `v = rate`, the normal force `N`, the stiffness `σ` and damping
-    /// `c` of the bristles, and the coefficient `μ`, kinetic if `start` slips and otherwise static, the trial
-    /// force is `f = σ z + c v`. A contact sticks while `|f| ≤ μ N`: `ż = v` and `F = −f`. Beyond this cone,
-    /// `F = −μ N f/|f|`, and bristles that slip carry this force, `σ z + c ż = μ N f/|f|`. The velocity
-    /// `v − ż` is that of the slip, parallel to the force. Force and deflection are continuous where the
-    /// contact begins or ceases to slip, except for the difference between static and kinetic friction.
+    /// With the deflection `z`, the velocity `v = rate`, the normal force `N`, the stiffness `σ` and the
+    /// damping `c = damping`, N s/m, of the bristles, and the coefficient `μ`, kinetic if `start` slips and
+    /// otherwise static, the trial force is `f = σ z + c v`. A contact sticks while `|f| ≤ μ N`: `ż = v` and
+    /// the force on the second body is `F = −f`. Beyond this cone, `F = −μ N f/|f|`, and bristles that slip
+    /// transmit this force, `σ z + c ż = μ N f/|f|`. The velocity `v − ż` is that of the slip, parallel to
+    /// the force. Force and deflection are continuous where the contact begins or ceases to slip, except for
+    /// the difference between static and kinetic friction.
     ///
     /// Source of the return to the cone: Simo and Hughes, Computational Inelasticity, 1998, sections 1.2
     /// and 1.7.
@@ -143,7 +145,12 @@ impl Friction {
     pub fn check(&self) -> Result<(), ContactError> {
         at_least("coefficient of static friction", self.static_coefficient, 0.0, "")?;
         at_least("coefficient of kinetic friction", self.kinetic_coefficient, 0.0, "")?;
-        at_least("coefficient of static friction", self.static_coefficient, self.kinetic_coefficient, "")?;
+        if self.static_coefficient < self.kinetic_coefficient {
+            let kinetic = exact(self.kinetic_coefficient);
+            let (name, got) = ("coefficient of static friction", self.static_coefficient);
+            let range = format!("at least {kinetic}, the coefficient of kinetic friction");
+            return Err(ContactError::Parameter { name, got, range, unit: "" });
+        }
         at_least("coefficient of torsional friction", self.torsional, 0.0, "m")?;
         positive("tangential stiffness", self.stiffness, "N/m")?;
         at_least("tangential damping", self.damping.unwrap_or(0.0), 0.0, "N s/m")

@@ -39,6 +39,6 @@ impl ImpactLaw {
             let range = "from 0 to 1".to_owned();
             return Err(ContactError::Parameter { name: "restitution", got: restitution, range, unit: "" });
         }
-        super::error::at_least("friction", friction, 0.0, "")
+        super::error::at_least("coefficient of friction", friction, 0.0, "")
     }
 }

@@ -23,7 +23,7 @@ pub struct LinkShapes {
 ///
 /// # Errors
 /// [`ContactError::NoLink`] if no link matches, [`ContactError::NoShape`] if none of the links that match has
-/// a collision shape, and [`ContactError::Geometry`] for a shape that is missing or invalid.
+/// a collision shape, and [`ContactError::Geometry`] for a collision shape that cannot be read or is invalid.
 pub fn links_matching(
     contact: &str,
     pattern: &str,

@@ -1,6 +1,6 @@
 //! Typical coefficients of friction of pairs of materials.
 
-use crate::model::nearest;
+use crate::model::closest;
 
 /// Coefficients of friction between two materials with clean and dry surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,8 +13,8 @@ pub struct MaterialPair {
     pub kinetic_coefficient: f64,
 }
 
-/// Typical coefficients of clean, dry surfaces in air. Coatings, oxide films and vacuum may change the
-/// coefficients by a factor of several; clean metals may seize in vacuum.
+/// Typical coefficients of friction between clean, dry surfaces in air. Coatings, oxide films and vacuum may
+/// change the coefficients severalfold; clean metals may seize in vacuum.
 ///
 /// The source gives 1.4 for sliding aluminium, which exceeds its static coefficient; because the friction
 /// model requires a kinetic coefficient of at most the static one, the table repeats the static coefficient.
@@ -42,19 +42,22 @@ const fn pair(
     MaterialPair { materials: [a, b], static_coefficient, kinetic_coefficient }
 }
 
-/// Returns the typical coefficients of friction of two materials, which may be given in either order.
+/// Returns the typical coefficients of friction of two materials, which may be given in either order. The
+/// spelling `aluminum` is accepted as well.
 ///
 /// # Errors
-/// A message with the known pairs and the most similar one, if the table does not contain the pair.
+/// A message with the known pairs and, if there is one, a similar pair, if the table does not contain the
+/// pair.
 pub fn material_pair(a: &str, b: &str) -> Result<MaterialPair, String> {
     let [a, b] = [a, b].map(|name| if name == "aluminum" { "aluminium" } else { name });
     let is_pair = |pair: &&MaterialPair| pair.materials == [a, b] || pair.materials == [b, a];
     MATERIAL_PAIRS.iter().find(is_pair).copied().ok_or_else(|| {
         let names: Vec<String> = MATERIAL_PAIRS.iter().map(|pair| pair.materials.join("-")).collect();
-        let similar = nearest(&names, &format!("{a}-{b}"));
+        let similar = closest(&names, &format!("{a}-{b}"));
+        let similar = similar.map_or_else(String::new, |pair| format!(" (did you mean '{pair}'?)"));
         format!(
-            "no coefficients of friction are known for '{a}' on '{b}'{similar}; give the coefficients, or use one of the \
-             known pairs: {}",
+            "no coefficients of friction are known for '{a}' on '{b}'{similar}; give the coefficients, or use \
+             one of the known pairs: {}",
             names.join(", ")
         )
     })

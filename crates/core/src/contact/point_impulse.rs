@@ -3,11 +3,11 @@
 /// Number of sectors of the full circle in which the direction of sliding is searched for.
 const DIRECTIONS: usize = 64;
 
-/// Returns the impulse `p` (normal, then two tangential components) at one point, after which the velocity
-/// `u = b + W p` satisfies `0 ≤ p_n ⟂ u_n − target ≥ 0`, `|p_t| ≤ μ p_n`, and `p_t = −μ p_n u_t/|u_t|` where
-/// the point slides.
+/// Returns the impulse `p`, N s (normal, then two tangential components), at one point, after which the
+/// velocity `u = b + W p`, m/s, satisfies `0 ≤ p_n ⟂ u_n − target ≥ 0`, `|p_t| ≤ μ p_n`, and
+/// `p_t = −μ p_n u_t/|u_t|` where the point slides.
 ///
-/// The point separates without an impulse if `b_n ≥ target`. Otherwise it sticks if the impulse that stops
+/// The impulse is zero if `b_n ≥ target` or `W_nn ≤ 0`. Otherwise the point sticks if the impulse that stops
 /// it, `W p = (target − b_n, −b_t)`, is inside the cone. Otherwise it slides. If no sliding impulse
 /// satisfies the conditions, friction is omitted. The result does not depend on the choice of the
 /// tangential axes.
@@ -51,7 +51,7 @@ fn solve(w: &[[f64; 3]; 3], r: [f64; 3]) -> Option<[f64; 3]> {
     Some([r[0] / d0 - l1 * p1 - l2 * p2, p1, p2])
 }
 
-/// Point that slides after the impulse.
+/// Impulse problem of a single point that slides after the impulse.
 struct Sliding<'a> {
     w: &'a [[f64; 3]; 3],
     b: [f64; 3],
@@ -110,7 +110,8 @@ impl Sliding<'_> {
     }
 
     /// Returns the impulse for the direction of sliding between two angles, rad; `None` if [`Trial::across`]
-    /// has no change of sign between them, or if the velocity there is opposite to the assumed direction.
+    /// has no change of sign between them, if there is no trial for one of the angles, or if the velocity
+    /// that is found is opposite to the assumed direction.
     fn between(&self, mut low: f64, mut high: f64) -> Option<[f64; 3]> {
         let (mut before, mut after) = (self.trial(low)?.across, self.trial(high)?.across);
         if before * after > 0.0 {

@@ -15,8 +15,9 @@ use crate::model::Model;
 /// - two groups that share a joint while both controls are active, if the times of both controls are known
 ///   before the run;
 /// - gains, goals or references that are invalid or do not fit the group;
-/// - a goal, or a shift of the reference to the present state, of a control without a tracking error or with
-///   an external law;
+/// - a tracked frame that does not exist or that too few joints of the group move;
+/// - a goal, or a shift of the reference to the present state, of a control that has no tracking error or
+///   follows external commands;
 /// - a shift of the reference, or a path tolerance, of a grip-force law;
 /// - a grip force that exceeds the effort limits of the joints;
 /// - a load, or internal forces, of a law that does not use them;
@@ -33,9 +34,9 @@ pub fn check_controls(controls: &[Control], model: &Model) -> Result<(), Control
             control.law.check(&control.name, &control.joints, model).and_then(|()| check_goal(control));
         fits.map_err(|error| error.of_control(&control.name))?;
         let command = control.law.control_law().joint_command();
-        let moves_load = control.load.is_none() || command == JointCommand::Task;
-        if !moves_load || !control.internal_forces.is_empty() && command == JointCommand::Effort {
-            return Err(ControlError::UnusedLoad { control: control.name.clone() });
+        let is_load = control.load.is_some() && command != JointCommand::Task;
+        if is_load || !control.internal_forces.is_empty() && command == JointCommand::Effort {
+            return Err(ControlError::UnusedLoad { control: control.name.clone(), is_load });
         }
         check_window(i, controls)?;
         for earlier in 0..i {
@@ -114,6 +115,8 @@ fn check_window(i: usize, controls: &[Control]) -> Result<(), ControlError> {
     let is_window = begin.is_finite() && !control.end.is_nan() && begin < control.end;
     if is_window {
         Ok(())
+    } else if !matches!(control.begin, Begin::At(_)) {
+        Err(ControlError::EndsBeforeStart { control: name(), end: control.end })
     } else {
         Err(ControlError::EmptyWindow { control: name(), begin, end: control.end })
     }

@@ -166,8 +166,8 @@ impl ControlLaw for ComputedTorque {
 /// errors would chatter at the goal.
 const AT_GOAL: f64 = 2e-8;
 
-/// Returns the `acceleration`, rad/s² (m/s²), that a law with the gain `kp`, 1/s², commands. Returns zero if
-/// its magnitude is at most `kp` times [`AT_GOAL`].
+/// Returns `acceleration`, rad/s² (m/s²), or zero if its magnitude is at most the gain `kp`, 1/s², of the law
+/// times [`AT_GOAL`].
 pub(super) fn zero_within_goal_error(acceleration: f64, kp: f64) -> f64 {
     if acceleration.abs() <= kp * AT_GOAL { 0.0 } else { acceleration }
 }
@@ -209,9 +209,9 @@ impl<S: Real> ComputedTorqueWork<S> {
         }
     }
 
-    /// Writes the joint accelerations of the last call to `asked`, `(n,)`, rad/s² (m/s²), from the first SIMD
-    /// lane. The compensation of Coulomb friction uses them. An entry is zero if its joint may stay at rest;
-    /// all are `None` if `law` does not compensate friction.
+    /// Writes the joint accelerations that the last call of [`computed_torque`] commanded to `asked`, `(n,)`,
+    /// rad/s² (m/s²), for the first SIMD lane. The compensation of Coulomb friction uses them. An entry is
+    /// zero if its joint may stay at rest; all are `None` if `law` does not compensate friction.
     pub fn desired_accelerations(&self, law: &ComputedTorque, asked: &mut [Option<f64>]) {
         let stiffness = law.least_stiffness();
         for (to, from) in asked.iter_mut().zip(&self.acceleration) {

@@ -31,8 +31,9 @@ pub struct Control {
     /// True if the reference is shifted so that it begins at the pose, or at the joint positions, that the
     /// robot has at the start of the control.
     pub starts_at_present: bool,
-    /// True if the trace has a `tracking` column with the error of this control. If false, a tracked frame
-    /// must be the tool of the run, whose error is recorded in `position_error` and `attitude_error`.
+    /// True if the trace has a `tracking` column with the error of this control, provided that the control
+    /// has an error. If false, a tracked frame must be the tool of the run, whose error is recorded in
+    /// `position_error` and `attitude_error`.
     pub has_column: bool,
 }
 
@@ -95,15 +96,15 @@ impl Control {
         }
     }
 
-    /// Returns the time from the start of the control until its reference comes to rest, s; 0 without a
-    /// reference.
+    /// Returns the time from the start of the control until its reference comes to rest, s: 0 without a
+    /// reference, and infinity if the reference never comes to rest.
     pub(super) fn duration(&self) -> f64 {
         let task = self.law.task().map(|(_, reference)| reference.duration());
         task.or_else(|| self.law.joint_reference().map(|path| path.duration())).unwrap_or(0.0)
     }
 
-    /// Returns those of the start and end times of the control, s, that are known before the run and are
-    /// later than zero.
+    /// Returns the start and end times of the control, s, if they are known before the run and later than
+    /// zero.
     pub fn switch_times(&self) -> impl Iterator<Item = f64> {
         let start = if let Begin::At(start) = self.begin { start } else { 0.0 };
         [start, self.end].into_iter().filter(|t| t.is_finite() && *t > 0.0)

@@ -152,7 +152,8 @@ pub(super) struct TaskDamping {
 pub(super) struct EffortInput<'a> {
     /// Name of the control.
     pub(super) control: &'a str,
-    /// Time, state of the robot, joints of the group and desired pose of the tracked frame.
+    /// Time, model and state of the robot, joints of the group, and desired pose and motion of the tracked
+    /// frame.
     pub(super) observation: Observation<'a>,
     /// Time since the last control tick, s; zero at the first tick.
     pub(super) elapsed: f64,
@@ -161,9 +162,9 @@ pub(super) struct EffortInput<'a> {
     /// Tracking error of the control, of length [`Control::width`](super::Control::width), and velocity error
     /// of its tracked frame, m/s and rad/s; the latter is zero unless the law needs the Jacobian.
     pub(super) error: (&'a [f64], Motion<f64>),
-    /// Columns of the joints of the group, `(6, k)`, of the generalized Jacobian of the tracked frame or, for
-    /// a reference relative to the base, of its Jacobian relative to the base. Outdated unless the law needs
-    /// the Jacobian.
+    /// Columns, `(6, k)`, that belong to the joints of the group in the generalized Jacobian of the tracked
+    /// frame or, for a reference relative to the base, in its Jacobian relative to the base. Up to date only
+    /// if the law needs the Jacobian.
     pub(super) jacobian: &'a [f64],
     /// Rates of the `k` joints of the group, `(k,)`, rad/s (m/s).
     pub(super) rates: &'a [f64],

@@ -37,7 +37,7 @@ pub struct ControlMemory {
     /// robot has at the start of the control.
     is_shifted: bool,
     /// Shift of the reference, or configuration that is held: a pose (12 numbers: the columns of the rotation
-    /// matrix, then the position, m) or the joint positions of the group, rad (m).
+    /// matrix, then the position, m), or one number per joint of the group, rad (m).
     anchor: Vec<f64>,
     pub(super) pid: PidMemory,
     /// Time of the last control tick, s; `None` before the first tick.
@@ -58,15 +58,15 @@ pub(super) struct ControlState {
     pub(super) memory: ControlMemory,
     /// True if the error is needed at every control tick.
     pub(super) needs_error: bool,
-    /// Constant reference at the origin of the frame in which the task reference is given, with the axes of
-    /// that frame; `None` without a task.
+    /// Reference that is at rest at the origin of the frame in which the task reference is given, with the
+    /// axes of that frame; its samples are the poses of that frame. `None` without a task.
     frame: Option<TaskReference>,
     pub(super) desired: JointSample,
     pub(super) desired_pose: Option<TaskSample<f64>>,
     /// Pose of the tracked frame: relative to the base if the reference is, otherwise in W.
     pub(super) pose: (Mat3<f64>, Vec3<f64>),
     /// Pose of the tracked frame in the frame of the load to which the reference applies; `None` without a
-    /// load.
+    /// load, or while the load is not held.
     pub(super) tool_in_load: Option<(Mat3<f64>, Vec3<f64>)>,
     /// Tracking error, desired less actual, of length [`Control::width`].
     pub(super) error: Vec<f64>,

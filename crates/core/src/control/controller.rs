@@ -5,7 +5,7 @@ use super::error::ControlError;
 use super::observation::Observation;
 use crate::model::Model;
 
-/// Controller implemented by the user.
+/// Interface of a user-defined controller, which computes the torques of its joints at each control tick.
 ///
 /// ```
 /// use onorbit_core::control::{ControlError, Controller, Observation};

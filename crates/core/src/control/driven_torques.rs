@@ -21,8 +21,9 @@ pub(super) struct DrivenTorques {
 /// Buffers of [`DrivenTorques::internal`] for `s` commanded rows.
 #[derive(Debug, Default)]
 struct Internal {
-    /// Matrices `Wᵀ` and `(P W)ᵀ`, row major `(s, a)`.
+    /// Matrix `Wᵀ`, row major `(s, a)`.
     shares: Vec<f64>,
+    /// Matrix `(P W)ᵀ`, row major `(s, a)`.
     projected: Vec<f64>,
     /// Matrix `Wᵀ P W`, row major `(s, s)`.
     matrix: Vec<f64>,

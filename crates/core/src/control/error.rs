@@ -1,7 +1,7 @@
 //! Errors of controls.
 
-use crate::model::nearest;
-use crate::number_text::{count, indices, short, unlike};
+use crate::model::closest;
+use crate::number_text::{choice, count, exact, short, unlike};
 use crate::reference::ReferenceError;
 use thiserror::Error;
 
@@ -18,7 +18,7 @@ pub enum ControlError {
     NotFinite { name: &'static str, value: f64 },
     #[error(
         "{name} holds {value}; expected numbers between -{most} and {most} (SI units)",
-        value = short(*value), most = short(*most)
+        value = exact(*value), most = exact(*most)
     )]
     TooLarge { name: &'static str, value: f64, most: f64 },
     #[error("{name} is {value}; it must not be negative", value = short(*value))]
@@ -30,9 +30,10 @@ pub enum ControlError {
     )]
     Zero { name: &'static str },
     #[error(
-        "control '{control}' grips with {force} N, which requires an effort of {effort} N from joint '{joint}', whose \
-         effort limit is {limit} N; reduce the force to {most} N or less, or raise the limit",
-        force = short(*force), effort = short(*effort), limit = short(*limit),
+        "control '{control}' grips with {force} N, which requires an effort of {effort} N from joint \
+         '{joint}', whose effort limit is {limit} N; reduce the force to about {most} N, or raise the \
+         limit",
+        force = short(*force), effort = unlike(*effort, &[*limit]), limit = short(*limit),
         most = short(force * limit / effort)
     )]
     GripEffort { control: String, joint: String, force: f64, effort: f64, limit: f64 },
@@ -78,14 +79,18 @@ pub enum ControlError {
     )]
     Overflow { joint: String, time: f64, value: f64 },
     #[error(
-        "control '{control}' commands the internal force of the loop '{name}', but {known}",
-        known = if known.is_empty() { "the robot has no loops that transmit one".to_owned() }
-            else { format!("the loops are: {}", known.join(", ")) }
+        "control '{control}' commands an internal force in '{name}', which is not a loop that transmits \
+         forces; {known}",
+        known = match &known[..] {
+            [] => "the robot has no such loop; omit the internal force".to_owned(),
+            [only] => format!("the only such loop is '{only}'"),
+            _ => format!("the loops that transmit forces are: {}", known.join(", ")),
+        }
     )]
     NoSuchLoop { control: String, name: String, known: Vec<String> },
     #[error(
-        "control '{control}' commands a {direction} {axis} in the loop '{name}', but the loop permits motion in this \
-         direction and transmits none; set this component to 0"
+        "control '{control}' commands a {direction} {axis} in the loop '{name}', but the loop permits \
+         motion in this direction and cannot transmit this component; set the component to 0"
     )]
     FreeDirection { control: String, name: String, direction: &'static str, axis: &'static str },
     #[error(
@@ -95,24 +100,27 @@ pub enum ControlError {
     )]
     LoadNotHeld { control: String, time: f64 },
     #[error(
-        "control '{control}' moves a load of a system that its own system does not know; add this system to 'knows'"
+        "control '{control}' of the system '{system}' moves a load of the system '{other}', which the \
+         controllers of '{system}' do not know; add '{other}' to 'knows' of '{system}'"
     )]
-    UnknownLoad { control: String },
+    UnknownLoad { control: String, system: String, other: String },
     #[error(
-        "control '{control}' has a load or internal forces, but its law does not use them; use the computed \
-         torque of a tool (or, for internal forces, of joints)"
+        "control '{control}' has {what}, which its controller does not use; omit the {what}, or use a \
+         computed-torque controller of {controlled}",
+        what = if *is_load { "load" } else { "internal forces" },
+        controlled = if *is_load { "a tool" } else { "a tool or of joints" }
     )]
-    UnusedLoad { control: String },
+    UnusedLoad { control: String, is_load: bool },
     #[error("control '{control}' drives no joint; name at least one joint")]
     EmptyGroup { control: String },
     #[error(
-        "control '{control}' drives joint {joint}, but the robot has {known}; give one of these indices",
-        known = indices(*count, "joint")
+        "control '{control}' drives joint {joint}, but the robot has {known}",
+        known = choice(*count, "joint")
     )]
     NoSuchJoint { control: String, joint: usize, count: usize },
     #[error(
-        "frame {frame} does not exist, because the robot has {known}; track one of these frames",
-        known = indices(*count, "frame")
+        "frame {frame} does not exist; the robot has {known}",
+        known = choice(*count, "frame")
     )]
     NoSuchFrame { frame: usize, count: usize },
     #[error("control '{control}' names joint '{joint}' twice; name each joint once")]
@@ -131,13 +139,13 @@ pub enum ControlError {
     )]
     NoSuchControl { control: String, after: String },
     #[error(
-        "control '{control}' follows itself through 'after', so it can never start; remove one 'after' from this \
-         chain"
+        "control '{control}' waits for itself through 'after', directly or through other controls, so it \
+         can never start; remove 'after' from one of these controls"
     )]
     AfterItself { control: String },
     #[error(
-        "control '{control}' starts after '{after}', which has neither a goal nor an end; give '{after}' \
-    a goal or an end"
+        "control '{control}' starts after '{after}', which has neither a goal nor an end; give '{after}' a \
+         goal or an end"
     )]
     NeverEnds { control: String, after: String },
     #[error(
@@ -146,6 +154,12 @@ pub enum ControlError {
         begin = unlike(*begin, &[*end]), end = short(*end)
     )]
     EmptyWindow { control: String, begin: f64, end: f64 },
+    #[error(
+        "control '{control}' starts after another control or an event, but ends at {end} s; give an end \
+         after 0 s, or omit it",
+        end = short(*end)
+    )]
+    EndsBeforeStart { control: String, end: f64 },
     #[error(
         "control '{control}' has {joints} in its group between frame '{frame}' and the base, but controlling the \
          position and attitude of the frame requires at least 6; add joints to the group",
@@ -159,8 +173,8 @@ pub enum ControlError {
     )]
     ReferenceLength { control: String, expected: usize, got: usize },
     #[error(
-        "control '{control}' has a goal, or starts at the current configuration, but has no reference; give \
-         it a reference of positions or rates"
+        "control '{control}' has a goal, or starts at the current configuration, but has no reference of \
+         positions, rates or a frame; give it one, or omit 'goal' and 'starts_at_present'"
     )]
     NothingTracked { control: String },
     #[error(
@@ -196,7 +210,7 @@ pub enum ControlError {
          'goal' and 'starts_at_present'"
     )]
     GoalOfExternal { control: String },
-    #[error("there is no control '{name}'{hint}", hint = named(known, name))]
+    #[error("no control '{name}' follows external commands{hint}", hint = named(known, name))]
     UnknownControl { name: String, known: Vec<String> },
     #[error("control '{control}' does not follow external commands{hint}", hint = externals(known))]
     NotExternal { control: String, known: Vec<String> },
@@ -205,7 +219,7 @@ pub enum ControlError {
     )]
     ControlEnded { control: String },
     #[error(
-        "'{name}' of the command to control '{control}' must have {expected}, but it has {got}",
+        "{name} of the command to control '{control}' must have {expected}, but it has {got}",
         got = count(*got, "number"),
         expected = if *points == 1 { format!("{}, one per joint of its group", count(*joints, "number")) }
             else { format!(
@@ -214,20 +228,22 @@ pub enum ControlError {
     )]
     CommandLength { control: String, name: &'static str, points: usize, joints: usize, got: usize },
     #[error(
-        "{name}[{index}] of the command to '{control}' is {value}; it must be finite and within ±1e60 (SI units)",
-        value = short(*value)
+        "{name}{place} of the command to control '{control}' is {value}; it must be finite and within \
+         ±1e60 (SI units)",
+        place = if *name == "start" { String::new() } else { format!("[{index}]") }, value = exact(*value)
     )]
     CommandNumber { control: String, name: &'static str, index: usize, value: f64 },
     #[error(
-        "the command to '{control}' is empty; give a position, a velocity or an effort, or at least one point of a \
-         trajectory"
+        "the command to control '{control}' is empty; give a position, a velocity or an effort, or at \
+         least one point of a trajectory"
     )]
     EmptyCommand { control: String },
     #[error(
-        "the command to '{control}' has accelerations without velocities; give the velocities too (accelerations are \
-         added to the law of positions and velocities)"
+        "the {what} for control '{control}' has accelerations without {lacks}; give {lacks} too",
+        what = if *is_trajectory { "trajectory" } else { "command" },
+        lacks = if *is_trajectory { "velocities" } else { "positions or velocities" }
     )]
-    AccelerationAlone { control: String },
+    AccelerationAlone { control: String, is_trajectory: bool },
     #[error(
         "times[{index}] of the trajectory of '{control}' is {after} s; {least}",
         after = unlike(*after, &[*before]),
@@ -276,17 +292,18 @@ impl ControlError {
     }
 }
 
-/// Returns the hint for an unknown control: the nearest name, or all names, of the controls that follow
-/// commands; without such controls, the advice to declare one.
+/// Returns the hint for an unknown control: the most similar name of a control that follows commands, or the
+/// hint of [`externals`] if no name is similar.
 fn named(known: &[String], name: &str) -> String {
-    if known.is_empty() { externals(known) } else { nearest(known, name) }
+    closest(known, name).map_or_else(|| externals(known), |meant| format!("; did you mean '{meant}'?"))
 }
 
 /// Returns the hint for a control that does not follow commands: the names of the controls that do or,
-/// without any, the advice to declare one.
+/// without such controls, the advice to declare one.
 fn externals(known: &[String]) -> String {
     match known {
         [] => "; use an External controller for the joints to be commanded".to_owned(),
-        _ => format!("; those that do are: {}", known.join(", ")),
+        [only] => format!("; the only control that follows them is '{only}'"),
+        _ => format!("; the controls that follow them are: {}", known.join(", ")),
     }
 }

@@ -14,8 +14,8 @@ use serde::{Deserialize, Serialize};
 /// A command is held until the next command. If a command has positions or rates, the torque is that of
 /// [`JointComputedTorque`], `τ = M* (a + kd (vd − q̇) + kp (qd − q)) + c* − Q* + f`, with the commanded
 /// positions `qd`, rates `vd` and accelerations `a`, plus the commanded effort. Without positions there is no
-/// position term; without accelerations `a = 0`. For positions without rates `vd = 0`. If a command has only
-/// efforts, they are the torques.
+/// position term; without accelerations `a = 0`. For constant positions without rates `vd = 0`; a trajectory
+/// without rates is interpolated linearly. If a command has only efforts, they are the torques.
 ///
 /// Before the first command, the law holds the initial positions of its group if `kp` is positive for all
 /// joints. Otherwise it damps the rates if `kd` is positive for all joints; if neither is the case, it exerts
@@ -48,8 +48,8 @@ pub enum OnTimeout {
 /// State of an [`External`] law, which a checkpoint stores.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct ExternalMemory {
-    /// Time at which a command was sent, s, and the command, while it has not yet taken effect; otherwise
-    /// `None`.
+    /// Command that has not yet taken effect, preceded by the time, s, at which it was sent; `None` without
+    /// such a command.
     pending: Option<(f64, ExternalCommand)>,
     current: ExternalCommand,
     /// Time at which the current command times out, s; `None` without a timeout. The deadline of a pending
@@ -82,8 +82,9 @@ impl External {
     /// Checks the gains and the timeout for a group of `count` joints.
     ///
     /// # Errors
-    /// [`ControlError`] if a gain is invalid, if the timeout is not positive, or if the behaviour after the
-    /// timeout requires a gain that is not positive for all joints (`kp` and `kd` to hold, `kd` to damp).
+    /// [`ControlError`] if a gain is invalid, if the timeout is not positive and finite, or if the behaviour
+    /// after the timeout requires a gain that is not positive for all joints (`kp` and `kd` to hold, `kd` to
+    /// damp).
     pub fn check(&self, count: usize) -> Result<(), ControlError> {
         self.law.check(count)?;
         let Some(timeout) = self.timeout else { return Ok(()) };
@@ -145,7 +146,7 @@ impl External {
         self.memory.current = ExternalCommand::Setpoint(setpoint);
     }
 
-    /// Returns true if a command, or the timeout, takes effect at `now`, s.
+    /// Returns true if a command, or the timeout, takes effect at `now`, s, or earlier.
     pub(super) fn is_due(&self, now: f64) -> bool {
         self.has_due_command(now) || self.memory.deadline.is_some_and(|deadline| deadline <= now)
     }
@@ -173,8 +174,8 @@ impl External {
         });
     }
 
-    /// Computes the desired motion at `t`, s. On entry `out` holds the positions and rates of the group;
-    /// those that are not commanded do not change.
+    /// Computes the desired motion at `t`, s, as [`ExternalCommand::sample`] does. On entry `out` holds the
+    /// positions and rates of the group.
     pub(super) fn sample(&self, t: f64, out: &mut JointSample) {
         self.memory.current.sample(t, out);
     }

@@ -60,7 +60,7 @@ impl ExternalCommand {
         self.check(control, count, f64::NEG_INFINITY).is_ok()
     }
 
-    /// Returns the time at which a command sent at `sent`, s, takes effect, s.
+    /// Returns the time, s, at which a command that is sent at `sent`, s, takes effect.
     pub(super) fn begin(&self, sent: f64) -> f64 {
         match self {
             Self::Setpoint(_) => sent,
@@ -96,7 +96,9 @@ impl ExternalCommand {
     }
 
     /// Computes the desired motion at simulation time `t`, s. On entry `out` holds the current positions and
-    /// rates; those that are not commanded do not change.
+    /// rates. For a setpoint, positions that are not commanded do not change. Rates that are not commanded
+    /// are zero if positions are commanded, and otherwise do not change; accelerations that are not commanded
+    /// are zero. A trajectory sets all three quantities by interpolation.
     pub(super) fn sample(&self, t: f64, out: &mut JointSample) {
         match self {
             Self::Setpoint(setpoint) => setpoint.sample(out),
@@ -136,7 +138,9 @@ impl Setpoint {
             let control = control.to_owned();
             match (acceleration, effort) {
                 (None, None) => return Err(ControlError::EmptyCommand { control }),
-                (Some(_), _) => return Err(ControlError::AccelerationAlone { control }),
+                (Some(_), _) => {
+                    return Err(ControlError::AccelerationAlone { control, is_trajectory: false });
+                }
                 (None, Some(_)) => {}
             }
         }
@@ -184,7 +188,7 @@ impl JointTrajectory {
             rows.as_deref().map_or(Ok(()), |rows| check_rows(control, what, rows, points, count))?;
         }
         if velocities.is_none() && accelerations.is_some() {
-            return Err(ControlError::AccelerationAlone { control: name() });
+            return Err(ControlError::AccelerationAlone { control: name(), is_trajectory: true });
         }
         if self.end() < now {
             return Err(ControlError::PastTrajectory { control: name(), end: self.end(), now });
@@ -210,8 +214,9 @@ impl JointTrajectory {
     }
 
     /// Interpolates at simulation time `t`, s: by quintic polynomials if the points have velocities and
-    /// accelerations, by cubic polynomials if they have only velocities, and otherwise linearly. After the
-    /// last point, its positions are held at rest.
+    /// accelerations, by cubic polynomials if they have only velocities, and otherwise linearly. Before the
+    /// first point, the result is that at the first point; after the last point, its positions are held at
+    /// rest.
     fn sample(&self, t: f64, out: &mut JointSample) {
         let Self { start, times, positions, velocities, accelerations } = self;
         let (n, last) = (out.q.len(), times.len() - 1);

@@ -9,7 +9,8 @@ use crate::spatial::{Scalar, Vec3};
 /// Finger of a gripper, moved by a joint of the group of a control or by a joint that mimics one of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Finger {
-    /// Index in the group of the joint that moves the finger, or of the joint that it mimics.
+    /// Index in the group of the joint that moves the finger or, if the finger is moved by a mimic joint, of
+    /// its leader.
     pub(crate) place: usize,
     /// Index in the model of the joint that moves the finger.
     pub(crate) joint: usize,

@@ -63,8 +63,9 @@ impl PerJoint {
             name,
             // the error of a tool has two components
             expected: match count {
-                1 => "1, because the group has one joint".to_owned(),
-                2 => "1 for all, or 2: one per joint of the group, or position and attitude of a tool"
+                1 => "1, for the only joint of the group or for the grip force".to_owned(),
+                2 => "1 for all, or 2: one per joint of the group, or one for the position and one for the \
+                      attitude of a tool"
                     .to_owned(),
                 _ => format!("1 for all, or {count}: one per joint of the group"),
             },

@@ -14,7 +14,10 @@ use serde::{Deserialize, Serialize};
 /// is reached as soon as all errors are within `tolerance`. It fails if this has not happened `time` seconds
 /// after the end. After a failure the control holds the present joint positions, or the present pose:
 /// relative to the base if the reference is, otherwise in W. If rates are commanded, the desired rates are
-/// then zero. A grip-force law continues unchanged.
+/// then zero.
+///
+/// A grip-force law has no path: its goal is evaluated from the start of the control, and cannot be reached
+/// before the desired force has risen to its final value. After a failure, the law continues unchanged.
 #[derive(Clone, Debug)]
 pub struct Goal {
     /// Largest permitted errors during the path, in units of the error; `None` for no limit.
@@ -28,8 +31,8 @@ pub struct Goal {
 /// Outcome of a goal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum Outcome {
-    /// No decision yet, or none at all because the control was never active, was stopped first, or the run
-    /// ended first.
+    /// No decision yet, or none at all because the control has no goal, was never active, was stopped first,
+    /// or the run ended first.
     #[default]
     Unfinished,
     /// All errors were within the goal's tolerance at `time`, s.

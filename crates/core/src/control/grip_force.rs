@@ -12,8 +12,8 @@ use crate::model::{Axis, BASE_NQ, Model};
 ///
 /// A finger is moved by a joint of the group, or by a joint that mimics one of them. `N` is the mean of the
 /// normal forces of all fingers, computed from the contact forces of the simulation. Until all fingers touch,
-/// each joint moves at its closing rate `r`: `τ = d (r − q̇)`. Then the desired force `F` increases to
-/// `force` within the time `ramp`, and
+/// each joint moves at its closing rate `r`: `τ = d (r − q̇)`. Then the desired force `F` increases from the
+/// present normal force to `force` at the rate `force/ramp`, and
 ///
 /// `τ = λ (F + ∫ i (F − N) dt) − d q̇ − p Δ`
 ///
@@ -29,7 +29,7 @@ pub struct GripForce {
     pub force: f64,
     /// Rates of the joints until all fingers touch, rad/s (m/s); their signs are those of the closing motion.
     pub closing_rate: PerJoint,
-    /// Time in which the desired force increases from zero to `force`, s; 0 for an immediate increase.
+    /// Time in which the desired force would increase from zero to `force`, s; 0 for an immediate increase.
     pub ramp: f64,
     /// Gain `i` of the integral of the force error, 1/s.
     pub integral: f64,
@@ -59,9 +59,9 @@ impl GripForce {
     /// Checks the parameters for a group of `count` joints.
     ///
     /// # Errors
-    /// [`ControlError`] if the number of values is neither 1 nor `count`, the force or a damping is not
-    /// positive, a closing rate is zero, or another value is negative, too large or not finite. Effort limits
-    /// may be infinite.
+    /// [`ControlError`] if the number of values is neither 1 nor `count`, if the force or a damping is not
+    /// positive, if a closing rate is zero, if the ramp, the integral gain, a stiffness or an effort limit is
+    /// negative, or if a value is too large or not finite. Effort limits may be infinite.
     pub fn check(&self, count: usize) -> Result<(), ControlError> {
         for (name, value) in [("force", self.force), ("ramp", self.ramp), ("integral", self.integral)] {
             check_numbers(name, &[value])?;

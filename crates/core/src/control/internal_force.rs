@@ -7,9 +7,9 @@ use crate::model::{Closure, Model};
 /// Commanded wrench that a closed loop transmits to its second body. Its axes and its reference point are
 /// those of the loop's joint as seen from the first body.
 ///
-/// If two hands hold a load, the capture that closes the loop defines it, and the wrench is that of the
-/// capturing hand on the load, about the origin of the captured frame and in its axes. The other hand carries
-/// the rest of the load. Torques that change the wrench cause no motion.
+/// If two hands hold a load, one of the captures closes the loop. The wrench is then that of the hand of this
+/// capture on the load, about the origin of the captured frame and in its axes; the other hand exerts the
+/// rest of the wrench that the motion of the load requires. Torques that change the wrench cause no motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InternalForce {
     /// Name of the loop, or of the capture that closes it.

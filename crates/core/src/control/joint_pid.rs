@@ -43,7 +43,7 @@ impl JointPid {
     ///
     /// # Errors
     /// [`ControlError`] if the number of gains or limits is neither 1 nor `count`, a gain is negative, not
-    /// finite or too large, a limit is negative or NaN, or gains are given for the effort interface.
+    /// finite or too large, a limit is negative or NaN, or a gain is not zero for the effort interface.
     pub fn check(&self, count: usize) -> Result<(), ControlError> {
         for (name, gains) in [("p", &self.p), ("i", &self.i), ("d", &self.d)] {
             gains.check(name, count)?;

@@ -1,4 +1,4 @@
-//! Reduced model of a robot that is connected to other robots whose models its controllers know.
+//! Reduced model of a robot that is connected to other robots whose models its controllers use.
 //!
 //! The controllers treat the links beyond a grasp as links of their robot, connected by additional joints
 //! that have no motors. Eliminating these joints yields a reduced model of the robot's own joints, which all
@@ -10,8 +10,8 @@ use crate::dynamics::{Data, FreeFloating, free_floating_frame, free_floating_rec
 use crate::model::{BASE_NQ, Model};
 use crate::spatial::{Motion, Scalar, cholesky_factor, cholesky_solve, dot};
 
-/// Tree of a robot and those robots connected to it whose models its controllers know, rooted at the robot's
-/// base.
+/// Kinematic tree of a robot and of the robots connected to it whose models its controllers use, rooted at
+/// the robot's base.
 #[derive(Debug)]
 pub struct KnownTree {
     /// Model of the tree.
@@ -119,8 +119,8 @@ impl KnownTree {
         }
     }
 
-    /// Computes pose, twist, Jacobian and drift of a frame (index in the robot) in W. Requires the results of
-    /// [`KnownTree::reduce`] in `out`.
+    /// Computes the pose, the twist, the Jacobian `J'` and the drift `d'` of a frame (index in the robot) in
+    /// W. Requires the results of [`KnownTree::reduce`] in `out`.
     ///
     /// `J' = J_O − J_P M_PP⁻¹ M_PO`, `d' = d + J_P M_PP⁻¹ (Q_P − c_P)`, with the generalized Jacobian `J` and
     /// the drift `d` of the tree.
@@ -144,8 +144,8 @@ impl KnownTree {
         out.pose.pos_w = full.pose.pos_w.map(|x| S::of(*x));
     }
 
-    /// Returns the drift `d`, m/s² and rad/s² in W axes, of the frame of the last [`KnownTree::reduce_frame`]
-    /// in the tree without its loops.
+    /// Returns the drift `d`, m/s² and rad/s² in W axes, that the frame of the last
+    /// [`KnownTree::reduce_frame`] would have if the loops of the tree were open.
     pub(super) fn drift(&self) -> Motion<f64> {
         self.full.drift
     }

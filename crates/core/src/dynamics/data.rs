@@ -34,8 +34,8 @@ pub struct BodyData<S> {
     /// Spatial acceleration, m/s² and rad/s²: either its velocity-product part or the complete acceleration,
     /// depending on the algorithm that ran last.
     pub acceleration: Motion<S>,
-    /// Difference between the acceleration and the bias acceleration for `q̈ = 0`, m/s² and rad/s². Set by
-    /// ABA for the base and at forks.
+    /// Difference between the acceleration and the bias acceleration for `q̈ = 0`, or for the given `q̈` of
+    /// locked joints, m/s² and rad/s². Set by ABA for the base and at forks.
     pub delta_acceleration: Motion<S>,
     /// Force through the joint (RNEA), `I^c S` with the composite inertia `I^c` (CRBA and `free_floating`),
     /// or the articulated bias force `pA` of the base and of bodies with a locked joint (ABA).

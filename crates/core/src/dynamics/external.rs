@@ -1,4 +1,4 @@
-//! External wrenches.
+//! External wrenches on the bodies of a robot.
 
 use super::data::Data;
 use super::kinematics::{frame_offset, frame_rotation_b};
@@ -14,8 +14,8 @@ pub struct FrameWrench<S> {
     pub wrench: Force<S>,
 }
 
-/// Sets the external wrenches of all bodies to the sums of `wrenches`. Requires up-to-date poses
-/// ([`positions`](super::positions)) in `data`.
+/// Sets the external wrench of each body to the sum of those of `wrenches` that act on its frames. Requires
+/// up-to-date poses ([`positions`](super::positions)) in `data`.
 pub fn apply_external<S: Real>(model: &Model, data: &mut Data<S>, wrenches: &[FrameWrench<S>]) {
     S::enter(
         #[inline(always)]

@@ -37,7 +37,7 @@ pub struct FreeFloating<S> {
     pub drift: Motion<S>,
     /// Pose of the frame in W.
     pub pose: FramePose<S>,
-    /// Twist at the origin of the frame in W axes, m/s and rad/s.
+    /// Twist of the frame at its origin, in W axes, m/s and rad/s.
     pub velocity: Motion<S>,
     /// Centre of mass `r_c` of the robot relative to the base origin, base axes, m. About `r_c`, `Mbb` is
     /// block diagonal with the blocks `m 1` and `I_c`.
@@ -266,8 +266,8 @@ accumulated!(SubtreeWrench<S>, Self(Force::zero()), |body| Self(body.subtree_ext
     .subtree_external =
     this.0);
 
-/// Returns inertia, bias force and external wrench of a subtree: those of its root plus the sums over the
-/// children.
+/// Returns the inertia, the bias force and the external wrench of a subtree: those of its root plus the sums
+/// over the children.
 #[inline(always)]
 fn add_body<S: Real>(
     body: &BodyData<S>,

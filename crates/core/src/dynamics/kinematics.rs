@@ -24,7 +24,8 @@ pub fn positions<S: Real>(model: &Model, data: &mut Data<S>, q: &[S]) {
     );
 }
 
-/// Computes [`positions`] and the twists of all bodies in base axes from `q`, `(nq,)`, and `v`, `(nv,)`.
+/// Computes the results of [`positions`], and the twists of all bodies in base axes, from `q`, `(nq,)`, and
+/// `v`, `(nv,)`.
 pub fn kinematics<S: Real>(model: &Model, data: &mut Data<S>, q: &[S], v: &[S]) {
     S::enter(
         #[inline(always)]

@@ -68,8 +68,8 @@ pub(crate) fn center_of_mass_b<S: Real>(data: &Data<S>) -> Vec3<S> {
     moment * (S::of(1.0) / mass)
 }
 
-/// Returns the kinetic energy `½ Σ vᵀ I v + ½ Σ rotor q̇²`, J, of the motion in W. Requires up-to-date
-/// kinematics ([`kinematics`](super::kinematics)) in `data`.
+/// Returns the kinetic energy `½ Σ vᵀ I v + ½ Σ I_r q̇²`, J, of the motion in W, with the rotor inertias
+/// `I_r` of the joints. Requires up-to-date kinematics ([`kinematics`](super::kinematics)) in `data`.
 pub fn kinetic_energy<S: Real>(model: &Model, data: &Data<S>, v: &[S]) -> S {
     S::enter(
         #[inline(always)]
@@ -111,7 +111,7 @@ fn inertia_momentum_energy<S: Real>(
     (inertia, momentum, twice_energy * S::of(0.5))
 }
 
-/// Returns the base twist `v_b = Mbb⁻¹ (h − Mbm q̇)`, in base axes, linear first, with which the robot has a
+/// Returns the base twist `v_b = Mbb⁻¹ (h − Mbm q̇)`, m/s and rad/s in base axes, with which the robot has a
 /// given momentum.
 ///
 /// `h` is the momentum `target` converted to B axes about the base origin. `target` is in W axes, with the

@@ -29,8 +29,8 @@ impl<const N: usize> PiecewiseChebyshev<N> {
         Self { start, length, blocks: vec![OnceLock::new(); blocks].into() }
     }
 
-    /// Returns the series of the interval that contains `t`, and the position of `t` in the interval, -1 to
-    /// 1, clamped.
+    /// Returns the series of the interval that contains `t`, s, or of the nearest interval, and the position
+    /// of `t` in the interval, clamped to [-1, 1].
     fn series_at(&self, t: f64, function: impl Fn(f64) -> Vector3<f64>) -> (&Coefficients<N>, f64) {
         let position = (t - self.start) / self.length;
         let last = self.blocks.len() * BLOCK - 1;

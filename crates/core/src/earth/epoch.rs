@@ -181,7 +181,7 @@ const OTHER_FORM: &str =
 fn without_scale(text: &str) -> String {
     let time = text.split_once(['T', ' ']).map_or("", |(_, time)| time);
     let fault = if time.contains(['+', '-']) {
-        "an offset from UTC is not accepted; convert it to UTC"
+        "an offset from UTC is not accepted (convert the time to UTC)"
     } else {
         "it does not end with a time scale, which is UTC (or Z), TAI, TT or TDB"
     };

@@ -1,6 +1,6 @@
 //! Errors of epochs, of the rotation of the Earth, and of the positions of the Sun and the Moon.
 
-use crate::number_text::{count, short, unlike};
+use crate::number_text::{count, exact, short, unlike};
 
 /// Errors of the `earth` module; each holds the offending values.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -60,7 +60,7 @@ pub enum EarthError {
     /// An Earth-orientation parameter is implausible.
     #[error(
         "{name} is {value}{place}; expected {expected}",
-        value = short(*value), place = row.map_or_else(String::new, |row| format!(" in row {row}"))
+        value = exact(*value), place = row.map_or_else(String::new, |row| format!(" in row {row}"))
     )]
     Parameter {
         /// Name of the parameter.
@@ -113,7 +113,11 @@ pub enum EarthError {
         run: &'static str,
     },
     /// A number in a segment of a SPICE kernel is implausible.
-    #[error("{name} of a segment of the kernel is {value}; expected {expected}; the kernel may be damaged; download it again", value = short(*value))]
+    #[error(
+        "{name} of a segment of the kernel is {value}; expected {expected}; download the kernel again, \
+         because it may be damaged",
+        value = exact(*value)
+    )]
     Segment {
         /// Name of the number.
         name: &'static str,
@@ -131,7 +135,7 @@ pub enum EarthError {
     /// A segment of a SPICE kernel does not consist of complete intervals.
     #[error(
         "a segment of the kernel has {got}, which is not a positive multiple of 3 × {per_interval} (3 components with \
-         {per_interval} per interval); the kernel may be damaged; download it again",
+         {per_interval} per interval); download the kernel again, because it may be damaged",
         got = count(*got, "coefficient")
     )]
     SegmentLength {

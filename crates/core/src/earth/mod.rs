@@ -124,8 +124,7 @@ impl Earth {
         self.sun_moon.as_ref().map(|sun_moon| sun_moon.epoch)
     }
 
-    /// Checks that the rotation of the Earth is known at simulation time `t`, s. Runs call this method once,
-    /// before they start.
+    /// Checks that the rotation of the Earth is known at simulation time `t`, s.
     ///
     /// # Errors
     /// [`EarthError::NotFinite`] for `t`; with an epoch, [`EarthError::OutsideSpan`] outside the table of

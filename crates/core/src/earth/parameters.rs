@@ -70,6 +70,10 @@ const FARTHEST_POLE: f64 = 5.0 * ARC_SECOND;
 
 impl Parameters {
     /// Prepares the parameters for a run whose time zero is `epoch`.
+    ///
+    /// # Errors
+    /// [`EarthError::ShortTable`] for a table of fewer than two rows; [`EarthError::Parameter`] for a date
+    /// that does not increase or is outside 1972 to 2100, and for an implausible UT1 - UTC or polar motion.
     pub(super) fn new(given: &EarthParameters, epoch: Epoch) -> Result<Self, EarthError> {
         match given {
             EarthParameters::Constant { ut1_minus_utc, polar_motion } => {
@@ -111,7 +115,8 @@ impl Parameters {
         }
     }
 
-    /// Returns UT1 - TAI at `t`, s, and its rate, s/s.
+    /// Returns UT1 - TAI, s, and its rate, s/s, at simulation time `t`, s. Outside a table, the value is that
+    /// at the nearest end.
     pub(super) fn ut1_minus_tai(&self, t: f64) -> (f64, f64) {
         match self {
             Self::Constant { ut1_minus_tai, .. } => (*ut1_minus_tai, 0.0),
@@ -123,7 +128,8 @@ impl Parameters {
         }
     }
 
-    /// Returns the polar motion `x_p, y_p` at `t`, rad.
+    /// Returns the polar motion `x_p, y_p`, rad, at simulation time `t`, s. Outside a table, it is that at
+    /// the nearest end.
     pub(super) fn polar_motion(&self, t: f64) -> [f64; 2] {
         match self {
             Self::Constant { polar_motion, .. } => *polar_motion,
@@ -135,7 +141,8 @@ impl Parameters {
     }
 }
 
-/// Returns the rows before and after `t`, and the position of `t` between the two: 0 to 1, clamped.
+/// Returns the rows before and after simulation time `t`, s, and the position of `t` between the two, clamped
+/// to [0, 1]. For a time outside the table, the rows are the two at its nearest end.
 fn around(rows: &[Row], t: f64) -> (&Row, &Row, f64) {
     let after = rows.partition_point(|row| row.time <= t).clamp(1, rows.len() - 1);
     let (a, b) = (&rows[after - 1], &rows[after]);

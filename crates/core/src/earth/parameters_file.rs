@@ -15,8 +15,8 @@ impl EarthParameters {
     /// row without polar motion or UT1.
     ///
     /// # Errors
-    /// [`EarthError::Table`], with the number of the line, for an empty file, another CSV header or a row
-    /// that cannot be parsed.
+    /// [`EarthError::Table`], with the number of the line, for an empty file, another CSV header, a row that
+    /// cannot be parsed, or a `finals2000A` table without values in its first row.
     pub fn read(text: &str) -> Result<Self, EarthError> {
         let is_data = |line: &&(usize, &str)| !line.1.trim().is_empty() && !line.1.starts_with('#');
         let lines: Vec<(usize, &str)> = text.lines().enumerate().collect();

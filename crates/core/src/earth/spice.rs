@@ -40,8 +40,8 @@ impl SpiceKernel {
     ///
     /// # Errors
     /// [`EarthError::SegmentLength`] for a segment without complete intervals, [`EarthError::NotFinite`]
-    /// for an infinite number or NaN, and [`EarthError::Segment`] for implausible numbers, which could
-    /// make positions overflow.
+    /// for an infinite number or NaN, and [`EarthError::Segment`] for a sign other than ±1, an interval whose
+    /// length is not positive, or a coefficient above 1e12 km, with which positions could overflow.
     pub fn new(sun: Vec<SpiceSegment>, moon: Vec<SpiceSegment>) -> Result<Self, EarthError> {
         for segment in sun.iter().chain(&moon) {
             let (got, size) = (segment.coefficients.len(), segment.count.saturating_mul(3));
@@ -64,12 +64,14 @@ impl SpiceKernel {
         (start, all().map(SpiceSegment::end).fold(f64::INFINITY, f64::min))
     }
 
-    /// Returns the position of the Sun, m, at `seconds` of TDB from J2000.0.
+    /// Returns the position of the Sun from the Earth's centre, GCRF axes, m, at `seconds` of TDB from
+    /// J2000.0.
     pub(super) fn sun(&self, seconds: f64) -> Vector3<f64> {
         self.sun.iter().map(|segment| segment.position(seconds)).sum()
     }
 
-    /// Returns the position of the Moon, m, at `seconds` of TDB from J2000.0.
+    /// Returns the position of the Moon from the Earth's centre, GCRF axes, m, at `seconds` of TDB from
+    /// J2000.0.
     pub(super) fn moon(&self, seconds: f64) -> Vector3<f64> {
         self.moon.iter().map(|segment| segment.position(seconds)).sum()
     }
@@ -83,7 +85,7 @@ impl SpiceSegment {
         } else if self.length <= 0.0 {
             ("the length of an interval, in s,", self.length, "a positive number of seconds")
         } else if let Some(value) = farthest {
-            ("a coefficient, in km,", value, "at most 1e12 km")
+            ("a coefficient, in km,", value, "a magnitude of at most 1e12 km")
         } else {
             return Ok(());
         };

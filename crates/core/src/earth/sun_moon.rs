@@ -61,8 +61,8 @@ impl SunMoon {
         (self.utc.0 + days as i64, seconds - days * DAY)
     }
 
-    /// Returns the position of the Sun at `t`, m, axes of `I`; `rot_ig` computes the rotation from GCRF to
-    /// `I`.
+    /// Returns the position of the Sun from the Earth's centre at simulation time `t`, s, in m, axes of `I`.
+    /// `rot_ig` computes the rotation from GCRF to `I`.
     pub(super) fn sun(&self, t: f64, rot_ig: impl Fn(f64) -> Matrix3<f64>) -> Vector3<f64> {
         self.sun.value(t, |t| {
             rot_ig(t)
@@ -73,8 +73,8 @@ impl SunMoon {
         })
     }
 
-    /// Returns the position of the Moon at `t`, m, axes of `I`; `rot_ig` computes the rotation from GCRF to
-    /// `I`.
+    /// Returns the position of the Moon from the Earth's centre at simulation time `t`, s, in m, axes of `I`.
+    /// `rot_ig` computes the rotation from GCRF to `I`.
     pub(super) fn moon(&self, t: f64, rot_ig: impl Fn(f64) -> Matrix3<f64>) -> Vector3<f64> {
         self.moon.value(t, |t| {
             rot_ig(t)

@@ -14,20 +14,20 @@ pub struct Bodies {
 }
 
 impl Bodies {
-    /// Creates the blocks from the states of the bodies of `systems`, each of which begins with its base.
+    /// Stores the states of the bodies of `systems` in blocks. The first body of each system is its base.
     pub fn new(systems: &[Vec<BodyState>]) -> Self {
         Self::of(systems, 0..systems.len())
     }
 
-    /// Creates the blocks from the states of the bodies of `systems`, each of which begins with its base;
-    /// `numbers` are the systems' numbers in the world.
+    /// Stores the states of the bodies of `systems` in blocks. The first body of each system is its base;
+    /// `numbers` are the numbers of the systems in the world.
     pub(crate) fn of(systems: &[Vec<BodyState>], numbers: impl Iterator<Item = usize>) -> Self {
         let layout = BlockLayout::of(numbers.zip(systems.iter().map(Vec::len)));
         let blocks = systems.iter().flat_map(|bodies| bodies.chunks(WIDTH)).map(BodyBlock::new).collect();
         Self { layout, blocks }
     }
 
-    /// Stores the motion of all bodies of the system at position `system` of the run; velocities are stored
+    /// Stores the motion of all bodies of the system with index `system` in the run; velocities are stored
     /// only if `with_velocity` is true. `motion(first)` returns the motion of the bodies from body `first`
     /// on, one per lane of `S`.
     #[inline(always)]
@@ -82,7 +82,13 @@ impl Bodies {
         })
     }
 
-    /// Returns all bodies with their states, system by system, each beginning with its base.
+    /// Returns the bodies that exist in a system, for the error about a body that does not exist.
+    pub(crate) fn known(&self, system: usize) -> String {
+        self.layout.known(system)
+    }
+
+    /// Returns the indices and states of all bodies, system by system; the first body of a system is its
+    /// base.
     pub fn iter(&self) -> impl Iterator<Item = (BodyIndex, BodyState)> {
         self.layout.bodies().filter_map(|index| self.get(index).map(|body| (index, body)))
     }

@@ -1,6 +1,7 @@
 //! Indices of bodies: by system and body, and by row in blocks of eight.
 
 use super::soa::WIDTH;
+use crate::number_text::{choice, count as counted};
 use std::fmt;
 
 /// Index of a body in one of the systems of a world.
@@ -72,6 +73,16 @@ impl BlockLayout {
         self.systems.iter().map(|rows| rows.count).sum()
     }
 
+    /// Returns the bodies that exist in a system, with the advice to give one of them, for the error about
+    /// the index of a body that does not exist.
+    pub(super) fn known(&self, system: usize) -> String {
+        match (self.systems.iter().find(|rows| rows.number == system), self.systems.len()) {
+            (Some(rows), 1) => format!("the robot has {}", choice(rows.count, "body")),
+            (Some(rows), _) => format!("system {system} has {}", choice(rows.count, "body")),
+            (None, _) => format!("there is no system {system}; give the number of an existing system"),
+        }
+    }
+
     /// Returns the rows of each system.
     pub(super) fn systems(&self) -> &[SystemRows] {
         &self.systems
@@ -83,12 +94,23 @@ impl BlockLayout {
         (body < rows.count).then(|| rows.first + body)
     }
 
-    /// Returns the indices of all bodies, system by system, each beginning with its base.
+    /// Returns the indices of all bodies, system by system; the first body of a system is its base.
     pub(super) fn bodies(&self) -> impl Iterator<Item = BodyIndex> {
         let bodies = |rows: &SystemRows| {
             let system = rows.number;
             (0..rows.count).map(move |body| BodyIndex { system, body })
         };
         self.systems.iter().flat_map(bodies)
+    }
+}
+
+impl fmt::Display for BlockLayout {
+    /// Writes the number of bodies of each system: `5 bodies of system 0 and 1 body of system 1`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let of_system =
+            |rows: &SystemRows| format!("{} of system {}", counted(rows.count, "body"), rows.number);
+        let systems: Vec<String> = self.systems.iter().map(of_system).collect();
+        f.write_str(if systems.is_empty() { "no bodies" } else { "" })?;
+        f.write_str(&systems.join(" and "))
     }
 }

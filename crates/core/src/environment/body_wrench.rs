@@ -14,7 +14,7 @@ use crate::model::Model;
 /// In `W` about the centre of mass: `F = R f`, `T = R τ + (o + R p - c) × F`, with the force `f` and torque
 /// `τ` in body axes, the rotation `R` of the body, its origin `o`, the point of application `p` in body axes,
 /// and the centre of mass `c`. The wrench is active in a step if the middle of the step is in `[start, end)`.
-/// Steps end at both times, so the wrench does not change during a step.
+/// Steps end at both times, so the wrench is never switched on or off within a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyWrench {
     body: BodyIndex,
@@ -123,11 +123,11 @@ impl Effect for BodyWrench {
     /// Adds the wrench if it is active in the step of the scene.
     ///
     /// # Errors
-    /// [`EnvironmentError::UnknownBody`] if the body does not exist.
+    /// [`EnvironmentError::UnknownBody`] if the scene or `wrenches` does not have the body.
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
-        let count = scene.bodies.len();
-        let unknown = EnvironmentError::UnknownBody { body: self.body, count };
-        let body = scene.bodies.get(self.body).ok_or(unknown)?;
+        let known = || scene.bodies.known(self.body.system);
+        let unknown = || EnvironmentError::UnknownBody { body: self.body, known: known() };
+        let body = scene.bodies.get(self.body).ok_or_else(unknown)?;
         let middle = scene.middle();
         if self.start <= middle && middle < self.end {
             // F = R f,  T = R τ + (o + R p - c) × F

@@ -77,7 +77,8 @@ impl Effect for DifferentialGravity {
     /// # Errors
     /// [`EnvironmentError::NoPlanet`] without a planet; [`EnvironmentError::InsidePlanet`] if the reference
     /// or a body is below the lowest possible ground of the planet; [`EnvironmentError::Gravity`] if the
-    /// field cannot be evaluated.
+    /// field cannot be evaluated; [`EnvironmentError::OtherBodies`] if `wrenches` belongs to different
+    /// bodies.
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         on_lanes!(scene.bodies.len(), S => self.add::<S>(scene, wrenches))
     }

@@ -46,8 +46,9 @@ impl Drag {
         Self { atmosphere, surfaces, cached }
     }
 
-    /// Returns the local atmosphere about the grid point nearest to `r`, or about `r` itself if the model is
-    /// not defined at the grid point. `r` is the position of the base of the system with this number.
+    /// Returns the local atmosphere about the grid point nearest to `r`, or about `r` itself at time `t`, s,
+    /// if the model is not defined at the grid point. `r` is the position, axes of `I`, m, of the base of the
+    /// system with the number `system`.
     fn local(
         &self,
         system: usize,
@@ -93,8 +94,9 @@ impl Effect for Drag {
     ///
     /// # Errors
     /// [`EnvironmentError::NoPlanet`] and [`EnvironmentError::NoEarth`] for a scene without a planet or an
-    /// Earth, [`EnvironmentError::InsidePlanet`] if the reference is below ground, and
-    /// [`EnvironmentError::Atmosphere`] if the density cannot be computed.
+    /// Earth, [`EnvironmentError::InsidePlanet`] if the reference is below ground,
+    /// [`EnvironmentError::Atmosphere`] if the density cannot be computed, and
+    /// [`EnvironmentError::OtherBodies`] if `wrenches` belongs to different bodies.
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         on_lanes!(scene.bodies.len(), S => self.add::<S>(scene, wrenches))
     }

@@ -43,7 +43,8 @@ pub trait Effect: Send + Sync + std::fmt::Debug {
         false
     }
 
-    /// Returns true if the effect depends on velocities. If no effect does, the scene contains no velocities.
+    /// Returns true if the effect depends on velocities. If no effect does, all velocities in the scene are
+    /// zero.
     fn reads_velocities(&self) -> bool {
         true
     }

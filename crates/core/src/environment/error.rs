@@ -5,11 +5,11 @@ use super::body_index::BodyIndex;
 use super::surfaces::SurfaceError;
 use crate::earth::EarthError;
 use crate::gravity::GravityError;
-use crate::number_text::{indices, short, unlike};
+use crate::number_text::{choice, short, unlike};
 use std::error::Error;
 use std::sync::Arc;
 
-/// Errors of the `environment` module; each holds the offending numbers.
+/// Errors of effects of the environment.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EnvironmentError {
@@ -18,7 +18,8 @@ pub enum EnvironmentError {
     Gravity(#[from] GravityError),
     /// An effect that requires a planet is used without a planet.
     #[error(
-        "{effect} requires an orbit around a planet, but this run has none; add an orbit or remove the effect"
+        "the effect '{effect}' requires an orbit around a planet, but this run has none; give the run such \
+         an orbit, or remove the effect"
     )]
     NoPlanet {
         /// Name of the effect.
@@ -26,8 +27,8 @@ pub enum EnvironmentError {
     },
     /// An effect that requires the rotation of the Earth is used without an Earth.
     #[error(
-        "{effect} requires the rotation of the Earth, but the run has no Earth; pass `earth` to the run (in YAML, \
-         give an epoch)"
+        "the effect '{effect}' requires the rotation of the Earth, but this run has no Earth; pass 'earth' \
+         to the run (in YAML, give an epoch)"
     )]
     NoEarth {
         /// Name of the effect.
@@ -35,8 +36,8 @@ pub enum EnvironmentError {
     },
     /// The reference or a body is inside the planet.
     #[error(
-        "{effect}: {what} is below ground, {distance} m from the planet's centre; expected at least \
-         {minimum} m; end the run earlier or raise the orbit",
+        "the effect '{effect}' cannot be evaluated, because {what} is below ground, {distance} m from the \
+         planet's centre; expected at least {minimum} m; end the run earlier or raise the orbit",
         distance = unlike(*distance, &[*minimum]), minimum = short(*minimum)
     )]
     InsidePlanet {
@@ -69,20 +70,17 @@ pub enum EnvironmentError {
         end: f64,
     },
     /// A wrench acts on a body that does not exist.
-    #[error(
-        "the wrench acts on {body}, but the robot has {known}; give one of these indices",
-        known = indices(*count, "body")
-    )]
+    #[error("the wrench acts on {body}, but {known}")]
     UnknownBody {
         /// Given body.
         body: BodyIndex,
-        /// Number of bodies that exist.
-        count: usize,
+        /// Bodies that exist, as text with the suggested fix.
+        known: String,
     },
     /// A wrench acts on a frame that does not exist.
     #[error(
-        "the wrench acts on frame {frame}, but the robot has {known}; give one of these indices",
-        known = indices(*count, "frame")
+        "the wrench acts on frame {frame}, but the robot has {known}",
+        known = choice(*count, "frame")
     )]
     UnknownFrame {
         /// Index of the given frame.
@@ -102,13 +100,16 @@ pub enum EnvironmentError {
     /// A user-defined effect failed.
     #[error(transparent)]
     User(#[from] UserError),
-    /// The numbers of bodies and wrenches differ.
-    #[error("the number of wrenches is {got}; expected {expected}, one for each body")]
-    WrongLength {
-        /// Number of bodies in the scene.
-        expected: usize,
-        /// Number of given wrenches.
-        got: usize,
+    /// The wrenches belong to other bodies than those of the scene.
+    #[error(
+        "the wrenches are for {got}, but the scene has {expected}; create wrenches for the bodies of the \
+         scene"
+    )]
+    OtherBodies {
+        /// Numbers of bodies of the systems of the scene, as text.
+        expected: String,
+        /// Numbers of bodies of the systems to which the wrenches belong, as text.
+        got: String,
     },
 }
 

@@ -42,8 +42,9 @@ impl Effect for GravityGradient {
     /// Adds the gravity-gradient torque of every body.
     ///
     /// # Errors
-    /// [`EnvironmentError::NoPlanet`] without a planet, [`EnvironmentError::InsidePlanet`] for a body below
-    /// ground, and [`EnvironmentError::Gravity`] if the field cannot be evaluated.
+    /// [`EnvironmentError::NoPlanet`] without a planet, [`EnvironmentError::InsidePlanet`] if the reference
+    /// or a body is below ground, [`EnvironmentError::Gravity`] if the field cannot be evaluated, and
+    /// [`EnvironmentError::OtherBodies`] if `wrenches` belongs to different bodies.
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         on_lanes!(scene.bodies.len(), S => self.add::<S>(scene, wrenches))
     }

@@ -45,8 +45,8 @@ pub const SHADOW_RADIUS: f64 = 6_378_137.0;
 
 /// Distance from the centre of mass of the base within which the light is assumed to be uniform, m.
 ///
-/// Within this distance, in a low orbit with a penumbra 60 km wide, `ν` changes by 1/600 and the direction of
-/// light by 7e-10 rad.
+/// Within this distance, in a low orbit with a penumbra 60 km wide, `ν` changes by at most 1/600 and the
+/// direction of the light by at most 7e-10 rad.
 const UNIFORM_RADIUS: f64 = 100.0;
 
 const ASTRONOMICAL_UNIT: f64 = 149_597_870_700.0;
@@ -108,7 +108,8 @@ struct Light<S> {
 }
 
 impl<S: Real> Light<S> {
-    /// Combines the light that reaches the bodies, one body per lane; `light(i)` returns that of lane `i`.
+    /// Stores the light that reaches several bodies, one body per lane; `light(i)` returns the light of lane
+    /// `i`.
     #[inline(always)]
     fn from_lanes(light: impl Fn(usize) -> Light<f64>) -> Self {
         Self { to_sun: Vec3::from_lanes(|i| light(i).to_sun), pressure: S::from_lanes(|i| light(i).pressure) }
@@ -120,7 +121,7 @@ fn planet_radius(radius: f64) -> Result<f64, SurfaceError> {
     if radius.is_finite() && radius >= 1e5 {
         return Ok(radius);
     }
-    let expected = "a radius of at least 1e5 m (in metres, not kilometres)";
+    let expected = "a finite radius of at least 1e5 m (in metres, not kilometres)";
     Err(SurfaceError::Value { name: "earth_radius", value: radius, expected })
 }
 
@@ -153,8 +154,9 @@ impl Effect for RadiationPressure {
     ///
     /// # Errors
     /// [`EnvironmentError::NoPlanet`] and [`EnvironmentError::NoEarth`] for a scene without a planet or an
-    /// Earth, [`EnvironmentError::InsidePlanet`] if the reference is below ground, and
-    /// [`EnvironmentError::Earth`] without an epoch or outside the span of the Sun's positions.
+    /// Earth, [`EnvironmentError::InsidePlanet`] if the reference is below ground,
+    /// [`EnvironmentError::Earth`] without an epoch or outside the span of the Sun's positions, and
+    /// [`EnvironmentError::OtherBodies`] if `wrenches` belongs to different bodies.
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         on_lanes!(scene.bodies.len(), S => self.add::<S>(scene, wrenches))
     }

@@ -95,7 +95,7 @@ impl<'a> Scene<'a> {
     /// of `S`.
     ///
     /// # Errors
-    /// [`EnvironmentError::WrongLength`] if `wrenches` belongs to different bodies; the errors of
+    /// [`EnvironmentError::OtherBodies`] if `wrenches` belongs to different bodies; the errors of
     /// `wrench_of`.
     #[inline(always)]
     pub(super) fn add_lanes<S: Real>(
@@ -115,8 +115,8 @@ impl<'a> Scene<'a> {
         wrench_of: impl Fn(&LaneGroup<'a>) -> Result<WrenchLanes<S>, EnvironmentError>,
     ) -> Result<(), EnvironmentError> {
         if self.bodies.layout != wrenches.layout {
-            let (expected, got) = (self.bodies.len(), wrenches.len());
-            return Err(EnvironmentError::WrongLength { expected, got });
+            let (expected, got) = (self.bodies.layout.to_string(), wrenches.layout.to_string());
+            return Err(EnvironmentError::OtherBodies { expected, got });
         }
         S::enter(
             #[inline(always)]
@@ -131,8 +131,8 @@ impl<'a> Scene<'a> {
         )
     }
 
-    /// Returns the state of the reference orbit and the rotation of the Earth, or an error if the scene has
-    /// no planet or no Earth, or if the reference is below ground.
+    /// Returns the state of the reference orbit and the Earth, or an error if the scene has no planet or no
+    /// Earth, or if the reference is below ground.
     pub(super) fn reference_and_earth(
         &self,
         effect: &'static str,

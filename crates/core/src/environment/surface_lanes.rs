@@ -18,7 +18,7 @@ impl Surfaces {
     /// system.
     ///
     /// # Errors
-    /// [`EnvironmentError::WrongLength`] if `wrenches` belongs to different bodies; the errors of
+    /// [`EnvironmentError::OtherBodies`] if `wrenches` belongs to different bodies; the errors of
     /// `wrench_of`.
     #[inline(always)]
     pub(super) fn add_lanes<'a, S: Real>(

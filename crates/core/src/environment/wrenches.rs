@@ -71,13 +71,13 @@ impl Wrenches {
         Some(Wrench { force: vector(&block.force), torque: vector(&block.torque) })
     }
 
-    /// Returns the wrenches on all bodies, system by system, each beginning with its base.
+    /// Returns the wrenches on all bodies, system by system; the first body of a system is its base.
     pub fn iter(&self) -> impl Iterator<Item = Wrench> {
         self.layout.bodies().filter_map(|body| self.get(body))
     }
 
-    /// Returns the wrenches on the bodies of a system, beginning with its base. `system` is the index of the
-    /// system in the list of systems of the run.
+    /// Returns the wrenches on the bodies of the system with index `system` in the run, beginning with its
+    /// base.
     pub(crate) fn of_system(&self, system: usize) -> impl Iterator<Item = Wrench> {
         let SystemRows { number, count, .. } = self.layout.systems()[system];
         (0..count).filter_map(move |body| self.get(BodyIndex { system: number, body }))
@@ -89,8 +89,8 @@ impl Wrenches {
     /// [`EnvironmentError::UnknownBody`] if the body does not exist.
     pub fn add(&mut self, body: impl Into<BodyIndex>, wrench: Wrench) -> Result<(), EnvironmentError> {
         let body = body.into();
-        let unknown = EnvironmentError::UnknownBody { body, count: self.len() };
-        let row = self.layout.row(body).ok_or(unknown)?;
+        let unknown = || EnvironmentError::UnknownBody { body, known: self.layout.known(body.system) };
+        let row = self.layout.row(body).ok_or_else(unknown)?;
         let Wrench { force, torque } = wrench;
         self.add_lanes(row, WrenchLanes::<f64> { force: force.into(), torque: torque.into() });
         Ok(())
@@ -105,7 +105,7 @@ impl Wrenches {
         store(&mut to.torque, offset, sum.torque);
     }
 
-    /// Returns the wrenches on consecutive bodies of the system at position `system` of the run, one per lane
+    /// Returns the wrenches on consecutive bodies of the system with index `system` in the run, one per lane
     /// of `S`, starting with body `first`.
     #[inline(always)]
     pub(crate) fn lanes<S: Real>(&self, system: usize, first: usize) -> WrenchLanes<S> {

@@ -4,7 +4,7 @@ use super::profile;
 use super::shape::Shape;
 use crate::spatial::Vec3;
 
-/// Nearest point of the boundary of a shape, in the axes of the shape.
+/// Point of the boundary of a shape that is nearest to a given point, in the axes of the shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoundaryPoint {
     /// Distance from the given point to the boundary, m; negative inside the shape.
@@ -15,10 +15,11 @@ pub struct BoundaryPoint {
     pub normal: Vec3<f64>,
 }
 
-/// Returns the boundary point that is nearest to `p`; both are in the axes of the shape, m. Returns `None`
-/// for a hull or a compound.
+/// Returns the signed distance from the point `p` to a shape, with the nearest boundary point and its normal,
+/// or `None` for a hull or a compound. Points are in the axes of the shape, m.
 ///
-/// Where several boundary points are equally near, as on the axis of a cylinder, the same one is chosen every time.
+/// Where several boundary points are equally near, as on the axis of a cylinder, the choice is always the
+/// same.
 pub fn signed_distance(shape: &Shape, p: Vec3<f64>) -> Option<BoundaryPoint> {
     match shape {
         Shape::Sphere { radius } => Some(about(Vec3::zero(), *radius, p)),

@@ -14,14 +14,14 @@ use crate::spatial::Vec3;
 /// Returns the signed distance between two shapes, its witness points and its normal, in common axes.
 ///
 /// Spheres (except with a hull), pairs of capsules, and half-spaces have closed forms. For a torus and
-/// another shape, the middle circle of the torus is searched for the nearest point. Other pairs of convex
-/// shapes use GJK and EPA. The distance of a compound is that of its nearest or most deeply overlapping
-/// piece. The result depends only on the arguments: nothing is stored between calls.
+/// another shape, the middle circle of the torus (the centre line of its tube) is searched for the nearest
+/// point. Other pairs of convex shapes use GJK and EPA. The distance of a compound is that of its nearest or
+/// most deeply overlapping piece. The result depends only on the arguments: nothing is stored between calls.
 ///
 /// # Errors
-/// [`GeometryError`] if a length or a pose is invalid; if no method covers the pair, such as two half-spaces
-/// or a torus whose middle circle lies inside the other shape; and if the bounds of the distance do not
-/// converge.
+/// [`GeometryError`] if a length or a pose is invalid, or a compound has no pieces; if no method covers the
+/// pair, such as two half-spaces or a torus whose middle circle intersects the other shape; and if the bounds
+/// of the distance do not converge.
 pub fn closest(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> Result<Proximity, GeometryError> {
     check(a, pose_a)?;
     check(b, pose_b)?;
@@ -96,16 +96,15 @@ fn single(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> Result<Proximit
     let pair = || Box::new(PosedPair { a: a.name(), pose_a: *pose_a, b: b.name(), pose_b: *pose_b });
     // in the axes of the first shape, coordinates keep their digits far from the common origin
     let pose = pose_a.relative(pose_b);
+    let failed = |gap| GeometryError::NotConverged { pair: pair(), gap };
     let found = match (a, b) {
         (Shape::Sphere { radius }, _) if !matches!(b, Shape::Hull(_)) => sphere(*radius, b, &pose),
         (Shape::Capsule { .. }, Shape::Capsule { .. }) => capsules(a, b, &pose),
         (_, Shape::HalfSpace) => half_space(a, &pose),
         (_, Shape::Torus { major_radius, minor_radius }) => {
-            torus::closest(a, (*major_radius, *minor_radius), &pose)
+            torus::closest(a, (*major_radius, *minor_radius), &pose).map_err(failed)?
         }
-        _ if a.is_convex_body() && b.is_convex_body() => Some(
-            convex::closest(a, b, &pose).map_err(|gap| GeometryError::NotConverged { pair: pair(), gap })?,
-        ),
+        _ if a.is_convex_body() && b.is_convex_body() => Some(convex::closest(a, b, &pose).map_err(failed)?),
         _ => None,
     };
     found.map(|proximity| proximity.in_common(pose_a)).ok_or_else(|| GeometryError::Unavailable(pair()))

@@ -38,7 +38,8 @@ impl PartialOrd for Entry {
 }
 
 /// Returns the unit vector `n` for which the support function `s(n)ᵀ n` of a convex set is least, accurate to
-/// first order in the remaining error; `None` if the set is flat. `farthest` returns the point `s(d)`.
+/// first order in the remaining error; `None` if the set is flat or a coordinate is not finite. `farthest`
+/// returns the point `s(d)`.
 ///
 /// The polytope inside the set grows at its triangle with the least signed distance from the origin, which is
 /// a lower bound of the result; the support function in the direction of its normal is an upper bound.

@@ -31,8 +31,8 @@ pub enum GeometryError {
     },
     /// Points have no convex hull with a volume.
     #[error(
-        "a convex hull with a volume cannot be formed from {points} ({cause}); give at least four points that are not \
-         in a plane",
+        "a convex hull with a volume cannot be formed from {points} ({cause}); give at least four points \
+         with finite coordinates that are not in a plane",
         points = number_text::count(*count, "point")
     )]
     Hull {
@@ -68,20 +68,20 @@ pub enum GeometryError {
         /// Reason, as text, with the suggested fix if there is one.
         cause: String,
     },
-    /// The distance between two shapes is not available, because both are half-spaces, or because the
-    /// middle circle of a torus intersects the other shape.
+    /// The distance between two shapes is not available: both are half-spaces, or the middle circle of a
+    /// torus intersects the other shape (for a capsule, its axis; for a torus, its middle circle).
     #[error("the distance between {} and {} is not available, because {}", .0.a, .0.b, unavailable(.0))]
     Unavailable(Box<PosedPair>),
     /// The distance between two shapes was not found.
     #[error(
-        "the distance between {a} at {at_a} m and {b} at {at_b} m was not found: its lower and upper bounds still differ by \
-         {gap} m; change one of the shapes slightly, and report the failure with both shapes and poses",
-        a = pair.a, b = pair.b, at_a = position(&pair.pose_a), at_b = position(&pair.pose_b), gap = short(*gap)
+        "the distance between {a} at {at_a} m and {b} at {at_b} m was not found{gap}; change one of the \
+         shapes slightly, and report the failure with both shapes and poses",
+        a = pair.a, b = pair.b, at_a = position(&pair.pose_a), at_b = position(&pair.pose_b), gap = gap_text(*gap)
     )]
     NotConverged {
         /// Kinds and poses of the two shapes.
         pair: Box<PosedPair>,
-        /// Difference between the lower and the upper bound, m.
+        /// Difference between the lower and the upper bound, m; NaN if no normal was found.
         gap: f64,
     },
 }
@@ -91,6 +91,15 @@ fn unavailable(pair: &PosedPair) -> &'static str {
     match (pair.a, pair.b) {
         ("a half-space", "a half-space") => "both are unbounded; replace one of them by a box",
         _ => "the centre line of the tube of the torus intersects the other shape; move the shapes apart",
+    }
+}
+
+/// Returns the part of a message that states the difference between the bounds, m, of a distance that did not
+/// converge, or that there is no such difference.
+fn gap_text(gap: f64) -> String {
+    match gap.is_nan() {
+        true => ", because the computation found no normal between them".to_owned(),
+        false => format!(": its lower and upper bounds still differ by {} m", short(gap)),
     }
 }
 

@@ -116,8 +116,8 @@ pub(super) struct Patch<N> {
     pub(super) width: N,
 }
 
-/// Returns the common part of two faces; `None` if there is none, if both are half-spaces, or if their
-/// normals are almost the same.
+/// Returns the common part of two faces; `None` if there is none, if both are half-spaces, or if the angle
+/// between their normals is less than about 11 degrees.
 pub(super) fn patch<N: Number>(a: &Facet<N>, b: &Facet<N>) -> Option<Patch<N>> {
     let along = unit(less(a.normal, b.normal))?;
     let cosine = dot(along, a.normal);

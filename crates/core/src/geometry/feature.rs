@@ -22,7 +22,7 @@ pub(super) enum Feature {
     Segment {
         /// End points of the line, m.
         ends: [Vec3<f64>; 2],
-        /// Radius of curvature of the surface across the line, m.
+        /// Radius of curvature of the surface across the line, m; half the base radius for a cone.
         radius: f64,
     },
     /// Face bounded by a convex polygon.

@@ -17,7 +17,7 @@ const PARALLEL: f64 = 1e-9;
 /// Returns the contact points of two plane faces, discs or half-spaces; `None` for other features and for
 /// faces without a common part. The depth of the deepest corner is that of the shapes, and the differences
 /// between the depths are those between the faces. If the common part is narrower than the depth, the
-/// witness points are added.
+/// witness points are added. If it has a single corner or no width, the result is the witness points alone.
 pub(super) fn face_points(proximity: &Proximity, a: &Feature, b: &Feature) -> Option<Vec<ContactPoint>> {
     let flat = common::<f64>(proximity, a, b)?;
     let depth = -proximity.distance;

@@ -38,7 +38,10 @@ impl Hull {
     pub fn new(points: &[Vec3<f64>]) -> Result<Self, GeometryError> {
         let failed = |cause| GeometryError::Hull { count: points.len(), cause };
         if points.iter().any(|p| !p.norm().is_finite()) {
-            return Err(failed("a coordinate is not finite"));
+            return Err(failed("a coordinate is infinite, NaN or too large"));
+        }
+        if points.len() < 4 {
+            return Err(failed("fewer than four"));
         }
         let (first, extent) = spread(points).ok_or_else(|| failed("they lie in a plane"))?;
         let polytope = grown(points, first, COPLANAR * extent)
@@ -87,7 +90,8 @@ impl Hull {
         self.bounding_sphere
     }
 
-    /// Returns the smallest sphere around the vertices whose centre is that of their axis-aligned bounding box.
+    /// Returns the smallest sphere that contains the vertices and has its centre at the centre of their
+    /// axis-aligned bounding box.
     fn sphere_around(&self) -> BoundingSphere {
         let axes = [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 1.0)];
         let middle = axes.map(|axis| 0.5 * (self.farthest(axis).dot(axis) + self.farthest(-axis).dot(axis)));
@@ -175,8 +179,8 @@ fn grown(points: &[Vec3<f64>], first: [usize; 4], tolerance: f64) -> Option<Poly
     Some(polytope)
 }
 
-/// Assigns each of the points `loose` (indices) to the first triangle, from index `first` on, that it lies
-/// outside of.
+/// Assigns each of the points `loose` (indices) to the first triangle, from index `first` on, whose plane it
+/// is above by more than `tolerance`, m. Other points are dropped.
 fn assign(
     polytope: &Polytope,
     points: &[Vec3<f64>],

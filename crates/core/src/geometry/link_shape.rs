@@ -24,8 +24,8 @@ pub struct LinkShape {
 /// hulls.
 ///
 /// # Errors
-/// [`GeometryError`] if the link has no collision shape, or if one of its collision shapes is missing or
-/// invalid.
+/// [`GeometryError`] if the link has no collision shape, or if one of its collision shapes cannot be read or
+/// is invalid.
 pub fn link_shape(model: &Model, frame: usize) -> Result<LinkShape, GeometryError> {
     let link = &model.frames()[frame].name;
     let invalid = |cause: String| GeometryError::Collision { link: link.clone(), cause };

@@ -127,7 +127,8 @@ fn obj(text: &str) -> Result<Mesh, String> {
     Ok(mesh)
 }
 
-/// Returns the index of the vertex in a corner such as `7/1/3`; negative numbers count from the last vertex.
+/// Returns the index, from 0, of the vertex in a corner such as `7/1/3`, where negative numbers count from
+/// the last vertex; `None` if this is not one of the `count` vertices.
 fn vertex(corner: &str, count: usize) -> Option<usize> {
     let index: i64 = corner.split('/').next()?.parse().ok()?;
     let index = if index < 0 { count as i64 + index } else { index - 1 };

@@ -56,9 +56,9 @@ impl Polytope {
     }
 
     /// Adds a point that is outside the triangle `seed`. This triangle and all triangles connected to it
-    /// are replaced if the point is more than `tolerance`, m, above their planes. Returns the index of the
-    /// first new triangle, or `None` if rounding has made the boundary of the replaced triangles
-    /// ambiguous.
+    /// are replaced if the point is more than `tolerance`, m, above their planes, or if they are flat.
+    /// Returns the index of the first new triangle, or `None` if rounding has made the boundary of the
+    /// replaced triangles ambiguous.
     pub(super) fn add(&mut self, point: Vec3<f64>, seed: usize, tolerance: f64) -> Option<usize> {
         let apex = self.points.len();
         self.points.push(point);

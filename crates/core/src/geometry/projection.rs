@@ -44,9 +44,9 @@ impl Projection {
         self.normal.cross(along).norm() <= STEEP * along.norm()
     }
 
-    /// Returns the corners of a segment or, counterclockwise about the normal, of a face; `None` for a point,
-    /// a half-space, a segment that is nearly parallel to the normal and a face that is nearly perpendicular
-    /// to the plane.
+    /// Returns the projections, m, of the ends of a segment or, counterclockwise about the normal, of the
+    /// corners of a face; `None` for a point, a half-space, a segment that is nearly parallel to the normal
+    /// and a face that is nearly perpendicular to the plane.
     pub(super) fn corners(&self, feature: &Feature) -> Option<Vec<Point>> {
         match feature {
             Feature::Segment { ends, .. } if !self.is_steep(*ends) => {

@@ -84,8 +84,9 @@ impl Shape {
     /// Checks the dimensions of the shape.
     ///
     /// # Errors
-    /// [`GeometryError`] if a length is not finite or not positive, if a compound has no pieces, or if the
-    /// pose of a piece is not finite.
+    /// [`GeometryError`] if a length is not finite or not positive (the half length of a capsule may be
+    /// zero), if the minor radius of a torus is not less than its major radius, if a compound has no pieces,
+    /// or if the pose of a piece is not finite.
     pub fn check(&self) -> Result<(), GeometryError> {
         let lengths: &[(&'static str, f64)] = match self {
             Self::Sphere { radius } => &[("radius", *radius)],
@@ -94,11 +95,12 @@ impl Shape {
             | Self::Cylinder { radius, half_length }
             | Self::Cone { radius, half_length } => &[("radius", *radius), ("half length", *half_length)],
             Self::Box { half_edges: [x, y, z] } => {
-                &[("half edge x", *x), ("half edge y", *y), ("half edge z", *z)]
+                &[("half edge along x", *x), ("half edge along y", *y), ("half edge along z", *z)]
             }
-            Self::Torus { major_radius, minor_radius } => {
-                &[("minor radius", *minor_radius), ("major minus minor radius", major_radius - minor_radius)]
-            }
+            Self::Torus { major_radius, minor_radius } => &[
+                ("minor radius", *minor_radius),
+                ("difference of the major and the minor radius", major_radius - minor_radius),
+            ],
             Self::HalfSpace | Self::Hull(_) => &[],
             Self::Compound(pieces) => {
                 for (piece, pose) in pieces.iter() {

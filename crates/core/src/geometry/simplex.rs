@@ -39,9 +39,10 @@ impl Simplex {
         used.fold(Vec3::zero(), |sum, (corner, weight)| of(corner).scale_add(*weight, sum))
     }
 
-    /// Returns the point that is nearest to the origin, and keeps only the corners with nonzero weights.
-    /// Returns `None` if the simplex is a tetrahedron that contains the origin. The newest corner is part of
-    /// the result, because this corner is nearer to the origin than the plane of the other corners.
+    /// Returns the point that is nearest to the origin, and keeps only the corners that determine this point.
+    /// Returns `None` if the simplex is a tetrahedron that contains the origin, or if a coordinate is NaN.
+    /// The newest corner is always kept, because it is nearer to the origin than the plane of the other
+    /// corners.
     ///
     /// All subsets with the newest corner are compared. This requires no thresholds on areas, which would end
     /// the search too early for curved shapes.
@@ -89,7 +90,7 @@ impl Simplex {
 }
 
 /// Returns the weights of the point that is nearest to the origin on the plane (or the line) through the
-/// first `count` points; `None` if a weight is negative.
+/// first `count` points; `None` if a weight is negative or NaN.
 fn weights([a, b, c]: [Vec3<f64>; 3], count: usize) -> Option<[f64; 3]> {
     let found = match count {
         1 => [1.0, 0.0, 0.0],

@@ -51,7 +51,8 @@ impl Solid {
         Ok(Self { mesh, hull, warning })
     }
 
-    /// Returns true if the volume of the solid equals that of its convex hull to within 1e-6.
+    /// Returns true if the volume of the solid is smaller than that of its convex hull by at most a fraction
+    /// of 1e-6.
     pub fn is_convex(&self) -> bool {
         self.mesh.volume() >= (1.0 - CONVEX) * self.hull.volume()
     }

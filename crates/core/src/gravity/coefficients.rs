@@ -169,10 +169,11 @@ fn unnormalised_earth(mu: f64, series: &Series) -> Option<String> {
 /// normalised; otherwise `None`. Unnormalised sectoral coefficients (order equal to degree) decay with
 /// the factorial of the degree.
 ///
-/// The normalisation factor `Nnn = √(2 (2n + 1)/(2n)!)` is 1e-7 times as large at n = 10 as at n = 4, and is
-/// smaller than `Nn0` by a similar factor. Normalised coefficients of planets decay approximately as `n⁻²`
-/// (Kaula's rule) and are similar within a degree. The threshold is the geometric mean of the two decays. The
-/// test requires degree 8 or more; the decay must exceed the threshold both over degrees and over orders.
+/// At n = 10, the normalisation factor `Nnn = √(2 (2n + 1)/(2n)!)` is 2e-7 times as large as at n = 4, and
+/// 9e-10 times as large as `Nn0`. Normalised coefficients of planets decay approximately as `n⁻²` (Kaula's
+/// rule) and are similar within a degree. The threshold is the geometric mean of the two decays. The
+/// test requires a degree and order of 8 or more; the decay must exceed the threshold both over degrees and
+/// over orders.
 fn unnormalised_decay(series: &Series) -> Option<String> {
     let high = series.degree().min(series.order()).min(16);
     let size = |n: usize, m: usize| -> f64 {

@@ -3,7 +3,7 @@
 use crate::earth::EarthError;
 use crate::number_text::{count, short, unlike};
 
-/// Errors of the `gravity` module; each holds the offending numbers.
+/// Errors of gravity models and of their files.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 #[allow(missing_docs)] // the fields are what the messages say
@@ -27,8 +27,8 @@ pub enum GravityError {
     #[error("degree is {degree}; it must be from 2 to 2700")]
     Degree { degree: usize },
     #[error(
-        "no gravity model is named '{name}'; expected {known} (in Python: GravityField.zonal) or the path of a .gfc \
-         file",
+        "no gravity model is named '{name}'; give one of the names {known}, or the path of a .gfc file (in \
+         Python, use GravityField.zonal for zonal, and GravityField.from_gfc for a file)",
         known = known.join(", ")
     )]
     UnknownModel { name: String, known: Vec<&'static str> },
@@ -45,8 +45,8 @@ pub enum GravityError {
     )]
     Units { name: &'static str, value: f64, expected: String },
     #[error(
-        "{model}: the coefficients of degree {degree}, order {order} reach {value}, but those of planets stay below \
-         {limit} (is a row truncated, or is the origin not the centre of mass?)",
+        "{model}: a coefficient of degree {degree}, order {order} is {value}, but those of planets have \
+         magnitudes below {limit} (is a row truncated, or is the origin not the centre of mass?)",
         value = unlike(*value, &[*limit]), limit = short(*limit)
     )]
     Implausible { model: String, degree: usize, order: usize, value: f64, limit: f64 },
@@ -93,7 +93,7 @@ pub enum GravityError {
     )]
     BelowSurface { distance: f64, minimum: f64 },
     #[error(
-        "{field} rotates with the planet, but the rotation is unknown; give `earth`, such as one that \
+        "{field} rotates with the planet, but the rotation is unknown; give 'earth', such as one that \
          rotates about z, or use a zonal field"
     )]
     NeedsEarth { field: String },

@@ -63,7 +63,8 @@ pub(super) fn is_near<S: Real>(a: Vec3<S>, b: Vec3<S>) -> bool {
     !S::any(S::of(LINEAR_RADIUS * LINEAR_RADIUS).less(d.dot(d)))
 }
 
-/// Cache of the last four expansions of a field. Each depends only on its position.
+/// Cache of the last four expansions of a field. Each depends only on the position about which the field is
+/// expanded.
 #[derive(Debug, Default)]
 pub(super) struct ExpansionCache(Mutex<[Option<Expansion>; 4]>);
 

@@ -14,7 +14,8 @@ use std::path::Path;
 const BUNDLED: [(&str, &str); 2] =
     [("egm2008", include_str!("models/egm2008.gfc")), ("jgm3", include_str!("models/jgm3.gfc"))];
 
-/// Largest accepted size of a model file, bytes. A file with coefficients up to degree 2190 has 0.3 GB.
+/// Largest accepted size of a model file, bytes. The size of a file with coefficients up to degree 2190 is
+/// 0.3 GB.
 const LARGEST_FILE: usize = 1 << 30;
 
 /// Gravity field of a planet, excluding its point mass, in axes `F` fixed in the planet with z along the
@@ -47,7 +48,7 @@ impl GravityField {
     }
 
     /// Creates the zonal field of a planet with gravitational parameter `mu`, m³/s², reference radius
-    /// `radius`, m, and unnormalised coefficients `j`: one to five of `J2`, `J3`, … `J6`.
+    /// `radius`, m, and one to five unnormalised coefficients `j`: `J2`, `J3` and so on, up to `J6`.
     ///
     /// # Errors
     /// [`GravityError`] for an empty `j` or more than five coefficients, non-finite numbers, and `mu` and
@@ -87,8 +88,8 @@ impl GravityField {
     /// `degree`.
     ///
     /// # Errors
-    /// [`GravityError`] for a file that is unreadable, truncated, not normalised or time-dependent, and the
-    /// errors of [`GravityField::new`].
+    /// [`GravityError`] for a file that is missing, unreadable, invalid, truncated, not normalised or
+    /// time-dependent, and the errors of [`GravityField::new`].
     pub fn from_gfc(path: &Path, degree: Option<usize>, order: Option<usize>) -> Result<Self, GravityError> {
         let file = path.display().to_string();
         let text = read_text(path, LARGEST_FILE).map_err(|error| {

@@ -10,8 +10,10 @@ use super::series::Series;
 /// coefficients are read.
 ///
 /// # Errors
-/// [`GravityError`], with the file and the line, for an invalid header or row, missing or repeated
-/// coefficients, a field that varies with time, and coefficients that are not normalised or implausible.
+/// [`GravityError`] for a degree outside its range, an invalid header or row, a last row that may be
+/// truncated, missing or repeated coefficients, a field that varies with time, a `mu` or radius that cannot
+/// be that of a planet, and coefficients that are not normalised or implausible. The error of a row states
+/// its line.
 ///
 /// Source: Barthelmes and Förste, The ICGEM-format, GFZ Potsdam 2011.
 pub(super) fn read(file: &str, text: &str, degree: Option<usize>) -> Result<Coefficients, GravityError> {

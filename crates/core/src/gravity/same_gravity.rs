@@ -32,11 +32,11 @@ impl Gravity {
         };
         let (own, others) = (sorted(self), sorted(other));
         if self.mu != other.mu || self.field != other.field {
-            Some("the planet's field")
+            Some("the planet's mu or field")
         } else if self.field.is_some() && self.earth != other.earth {
             Some("the Earth (its epoch or rotation model)")
         } else if own.len() != others.len() || !own.iter().zip(&others).all(is_same) {
-            Some("third bodies")
+            Some("the third bodies")
         } else {
             None
         }

@@ -10,8 +10,8 @@ use std::cell::OnceCell;
 
 /// Spacing, m, of the grid fixed in the planet on whose points fields are expanded for short steps.
 ///
-/// A robot in a low orbit passes a grid point about every fifth step of 1 ms. No position is farther than 28
-/// m from a grid point. The errors of the expansions average out over the grid, because `∇²g = 0`.
+/// A robot in a low orbit travels this distance in about four steps of 1 ms. No position is farther than 28 m
+/// from a grid point. The errors of the expansions average out over the grid, because `∇²g = 0`.
 const GRID_SPACING: f64 = 32.0;
 
 /// Field of third bodies and orientation of the planet at one instant.

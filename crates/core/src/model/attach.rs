@@ -73,8 +73,8 @@ impl Model {
         builder.build()
     }
 
-    /// Returns the description of this robot with, as its root, the link that names the body of the frame
-    /// `name`, and the pose of the frame in that link.
+    /// Returns the description of this robot with a new root, and the pose of the frame `name` in the new
+    /// root. The new root is the link that names the body of the frame.
     fn rooted_below(&self, name: &str) -> Result<(Description, Isometry3<f64>), ModelError> {
         let frame = &self.frames[self.frame(name)?];
         let root = &self.body_frame(frame.body).name;

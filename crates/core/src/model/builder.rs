@@ -34,7 +34,7 @@ impl ModelBuilder {
     /// Creates a builder for a robot whose floating base is the link `base`.
     ///
     /// # Errors
-    /// [`ModelError`] for an empty name or an invalid inertia of the base.
+    /// [`ModelError`] if the name of the base is empty, or if its mass, centre of mass or inertia is invalid.
     pub fn new(name: &str, base: Link) -> Result<Self, ModelError> {
         let mut builder = Self {
             description: Description { name: name.to_owned(), ..Description::default() },
@@ -229,8 +229,8 @@ impl Model {
     /// at its origin, and the given inertia about the centre of mass, kg m².
     ///
     /// # Errors
-    /// [`ModelError`] for a mass that is not positive, or an inertia that is not symmetric or has a negative
-    /// principal moment.
+    /// [`ModelError`] for a mass that is not positive, an inertia that is not symmetric and positive
+    /// definite, or numbers that are not finite or out of range.
     pub fn rigid_body(mass: f64, inertia: Matrix3<f64>) -> Result<Self, ModelError> {
         if mass == 0.0 {
             return Err(ModelError::MassNotPositive { link: "base".to_owned(), mass });

@@ -34,7 +34,7 @@ impl ModelBuilder {
             return Err(ModelError::NotFinite { what: "a pose", name: name() });
         }
         if let Some(length) = closing.length.filter(|length| !(SHORTEST..1e12).contains(length)) {
-            let expected = "1e-6 m to 1e12 m; use the kind 'spherical' for a distance of zero";
+            let expected = "1e-6 m to 1e12 m, or the kind 'spherical' for a distance of zero";
             return Err(ModelError::OutOfRange { what: "the length", name: name(), value: length, expected });
         }
         self.description.loops.push(closing);

@@ -1,10 +1,10 @@
-//! Couplings that are not part of the tree of a robot: joints that close kinematic loops, and joints that
-//! mimic other joints.
+//! Constraints in addition to the tree of a robot: joints that close kinematic loops, and couplings of mimic
+//! joints to other joints.
 
 use nalgebra::Isometry3;
 
-/// Shortest accepted length of a loop of kind [`LoopKind::Distance`], m; the direction between two origins
-/// that coincide is undefined.
+/// Smallest accepted distance between the two origins of a loop of kind [`LoopKind::Distance`], m. If the
+/// origins coincided, the direction of the force would be undefined.
 pub(super) const SHORTEST: f64 = 1e-6;
 
 /// Joint between two frames of a robot that closes a kinematic loop. The joint is a constraint; the tree of

@@ -79,7 +79,7 @@ pub(super) fn compile(description: Description, warnings: Vec<ModelWarning>) -> 
 }
 
 /// Checks the links whose inertia is indefinite and those with an inertia but no mass. Such a link is
-/// accepted only if the inertia of the whole body that contains it is valid.
+/// accepted only if the inertia of the whole body that contains it has no negative principal moment.
 pub(super) fn check_parts(model: &Model) -> Result<(), ModelError> {
     for warning in &model.warnings {
         let (ModelWarning::IndefinitePart { link, .. } | ModelWarning::InertiaWithoutMass { link }) = warning

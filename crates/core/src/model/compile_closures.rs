@@ -73,7 +73,7 @@ impl Model {
     }
 
     /// Returns the distance between the origins of two frames at zero joint positions, m, or an error that
-    /// names the loop `name` if the distance is too short.
+    /// names the loop `name` if the distance is below [`SHORTEST`].
     fn distance_at_zero(&self, name: &str, frames: &[Frame; 2]) -> Result<f64, ModelError> {
         let [a, b] = [0, 1].map(|side| self.origin_at_zero(&frames[side]));
         let length = (b - a).norm();
@@ -82,7 +82,7 @@ impl Model {
         }
         let (what, expected) = (
             "the length",
-            "at least 1e-6 m; give a length, because the frames coincide at zero joint positions",
+            "a given length of at least 1e-6 m, because the frames coincide at zero joint positions",
         );
         Err(ModelError::OutOfRange { what, name: name.to_owned(), value: length, expected })
     }

@@ -64,8 +64,7 @@ pub struct Link {
     pub inertial: Option<Inertial>,
     /// Visual shapes. If the list is empty, the collision shapes are drawn.
     pub visuals: Vec<Visual>,
-    /// Collision shapes, without meshes whose file does not exist. They are drawn if the link has no visual
-    /// shapes.
+    /// Collision shapes, without those that were not read. They are drawn if the link has no visual shapes.
     pub collisions: Vec<Visual>,
     /// Reasons why collision shapes were not read, such as a mesh file that does not exist; one reason
     /// for each shape that was not read.
@@ -143,7 +142,7 @@ pub enum Geometry {
     },
     /// Triangle mesh in a file.
     Mesh {
-        /// Path of the file, with `package://` resolved if the package was found.
+        /// Path of the file; if the file was not found, the name given in the URDF.
         filename: String,
         /// Factor by which the mesh is scaled along each axis.
         scale: [f64; 3],
@@ -212,7 +211,7 @@ pub enum JointKind {
 /// Limits of a joint; `None` means unlimited.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Limits {
-    /// Lowest and highest position, rad (m); one of them may be infinite.
+    /// Lowest and highest position, rad (m); either of them may be infinite.
     pub position: Option<(f64, f64)>,
     /// Highest rate, rad/s (m/s).
     pub velocity: Option<f64>,

@@ -1,6 +1,6 @@
 //! Errors and warnings of robot models.
 
-use crate::number_text::{list, short, unlike};
+use crate::number_text::{exact, list, short, unlike};
 use std::fmt;
 use thiserror::Error;
 
@@ -24,7 +24,7 @@ pub enum ModelError {
     AsymmetricInertia { link: String, difference: f64 },
     #[error("{what} of '{name}' contains infinity or NaN; specify finite numbers")]
     NotFinite { what: &'static str, name: String },
-    #[error("{what} of '{name}' is {value}; expected {expected} (check the units)", value = short(*value))]
+    #[error("{what} of '{name}' is {value}; expected {expected} (check the units)", value = exact(*value))]
     OutOfRange { what: &'static str, name: String, value: f64, expected: &'static str },
     #[error(
         "the robot has more than {most} moving joints, and matrices over all of them would require too much \
@@ -38,7 +38,7 @@ pub enum ModelError {
     NoMass,
     #[error(
         "nothing resists the motion of joint '{joint}': link '{link}' and its descendants have no inertia \
-         about the joint axis; add inertial properties to one of these links, or make the joint fixed"
+         in the direction of this motion; add inertial properties to one of these links, or make the joint fixed"
     )]
     MasslessSubtree { joint: String, link: String },
     #[error("nothing resists the motion of the base '{link}'; {}", base_advice(.joints))]
@@ -112,8 +112,8 @@ pub enum ModelWarning {
         /// Principal moments of the link, kg m², ascending.
         moments: [f64; 3],
     },
-    /// The inertia of a link is not positive definite, but that of the whole body to which the link belongs
-    /// is positive definite.
+    /// The inertia of a link has a negative principal moment, but that of the whole body to which the link
+    /// belongs has none.
     IndefinitePart {
         /// Name of the link.
         link: String,
@@ -191,9 +191,10 @@ impl fmt::Display for ModelWarning {
             ),
             Self::LoopFriction { name, joints } => write!(
                 f,
-                "all joints of the loop '{name}' have friction ({}); the friction torques that hold the loop at rest are \
-                 therefore not unique, and the computed ones, like the forces in the loop, depend on the order of \
-                 the joints; give friction to at most as many joints as the loop has independent joints",
+                "all joints of the loop '{name}' have friction ({}); the friction torques that hold the \
+                 loop at rest are therefore not unique, and the computed ones, like the forces in the \
+                 loop, depend on the order of the joints; give friction to at most as many joints as the \
+                 loop has degrees of freedom",
                 joints.join(", ")
             ),
             Self::Note(text) => f.write_str(text),
@@ -202,8 +203,8 @@ impl fmt::Display for ModelWarning {
 }
 
 impl ModelError {
-    /// Returns the existing name closest to the unknown name of the error. Returns `None` if no name is
-    /// close, or if the error is about something else.
+    /// Returns the existing name that is most similar to the unknown name of a [`ModelError::UnknownName`].
+    /// Returns `None` if no name is similar, and for all other errors.
     pub fn suggestion(&self) -> Option<&str> {
         match self {
             Self::UnknownName { name, candidates, .. } => closest(candidates, name),
@@ -258,8 +259,8 @@ fn base_advice(joints: &[String]) -> String {
     }
 }
 
-/// Returns the message about joints that mimic each other in a circle. The first joint is listed again as the
-/// last.
+/// Returns the message about joints that mimic each other in a circle, or about a joint that mimics itself.
+/// `joints` ends with the joint with which it begins.
 fn circle(joints: &[String]) -> String {
     match joints {
         [joint] | [joint, _] => {
@@ -272,21 +273,25 @@ fn circle(joints: &[String]) -> String {
     }
 }
 
-/// Returns `; did you mean 'x'?` with the candidate `x` closest to `name`, or a list of the candidates if
-/// there are only a few.
+/// Returns `; did you mean 'x'?` with the candidate `x` that is most similar to `name`. If no candidate is
+/// similar, returns a list of the candidates or, if there are more than twelve, their number and the first
+/// three.
 pub(crate) fn nearest(candidates: &[String], name: &str) -> String {
-    match closest(candidates, name) {
-        Some(meant) => format!("; did you mean '{meant}'?"),
-        None if (1..=12).contains(&candidates.len()) => {
-            format!("; the known names are: {}", candidates.join(", "))
+    match (closest(candidates, name), candidates) {
+        (Some(meant), _) => format!("; did you mean '{meant}'?"),
+        (None, []) => "; there are no known names".to_owned(),
+        (None, [only]) => format!("; the only known name is '{only}'"),
+        (None, known) if known.len() <= 12 => format!("; the known names are: {}", known.join(", ")),
+        (None, known) => {
+            format!("; there are {} known names, such as {}", known.len(), known[..3].join(", "))
         }
-        None => String::new(),
     }
 }
 
-/// Returns the candidate with the smallest edit distance to `name` if the distance is small, or else a
-/// candidate that contains `name`, if there is one.
-pub(super) fn closest<'a>(candidates: &'a [String], name: &str) -> Option<&'a str> {
+/// Returns the candidate with the smallest edit distance to `name` if the distance is small, or else the
+/// first candidate that contains `name`, which must then have at least three bytes. Returns `None` if there
+/// is neither.
+pub(crate) fn closest<'a>(candidates: &'a [String], name: &str) -> Option<&'a str> {
     const LONGEST: usize = 100; // the computing time grows with the product of the lengths
     let is_name = |c: &&String| c.len() <= LONGEST && name.len() <= LONGEST;
     let best = candidates.iter().filter(is_name).min_by_key(|c| distance(c, name));

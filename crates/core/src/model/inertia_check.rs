@@ -5,15 +5,17 @@ use super::error::ModelError;
 use crate::spatial::Sym3;
 use nalgebra::Matrix3;
 
-/// Relative tolerance of the triangle inequality and of the symmetry of a matrix, as a fraction of the
-/// largest entry. It covers the rounding of numbers printed with six digits.
+/// Relative tolerance of the checks of an inertia matrix. It covers the rounding of numbers printed with six
+/// digits. It is a fraction of the largest principal moment for the triangle inequality, and of the largest
+/// entry for the symmetry and for negative principal moments.
 const PRINTED_DIGITS: f64 = 1e-6;
 
 /// Squared radius of gyration, m², below which a moment of inertia is treated as rounding error; the radius
 /// is 10 nm. CAD programs print moments of small parts as 0 or as ±1e-20.
 const LEAST_GYRATION: f64 = 1e-16;
 
-/// Largest accepted coordinate in the description of a robot, m; about seven astronomical units.
+/// Largest accepted magnitude of a coordinate of a centre of mass or of the origin of a joint, m; about seven
+/// astronomical units.
 pub(super) const LONGEST: f64 = 1e12;
 
 /// Classification of an inertia by its principal moments (kg m², ascending).
@@ -32,11 +34,14 @@ pub(super) enum Sense {
 }
 
 /// Checks the inertial properties of the link `link` and classifies its inertia.
+///
+/// # Errors
+/// [`ModelError`] for a number that is not finite or out of range, a negative mass, or an asymmetric inertia.
 pub(super) fn check_inertial(link: &str, inertial: &Inertial) -> Result<Sense, ModelError> {
     let link = || link.to_owned();
     let Inertial { mass, com, inertia } = inertial;
     if !mass.is_finite() || !com.iter().chain(inertia.iter()).all(|x| x.is_finite()) {
-        return Err(ModelError::NotFinite { what: "the inertial", name: link() });
+        return Err(ModelError::NotFinite { what: "the mass, centre of mass or inertia", name: link() });
     }
     check_ranges(link(), inertial)?;
     let scale = inertia.amax();

@@ -53,7 +53,7 @@ impl JointChange {
 
 impl Model {
     /// Returns a copy of this robot in which one joint has the given damping, friction, rotor inertia and
-    /// spring.
+    /// spring. Values that are not given do not change.
     ///
     /// # Errors
     /// [`ModelError`] for an unknown or fixed joint, and for invalid values.

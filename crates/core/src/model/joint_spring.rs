@@ -3,7 +3,7 @@
 use super::error::{ModelError, ModelWarning};
 use crate::spatial::Real;
 
-/// Largest accepted stiffness and rest position, in SI units.
+/// Largest accepted magnitude of a stiffness, a cubic stiffness or a rest position, in SI units.
 const LARGEST: f64 = 1e20;
 
 /// Spring at a joint, with the torque (force) `τ = −k d − k₃ d³` at the deflection `d = q − q₀` from the rest
@@ -24,7 +24,7 @@ pub struct JointSpring {
 
 impl JointSpring {
     /// Creates a spring from its stiffness, N m/rad (N/m), its cubic stiffness, N m/rad³ (N/m³), and its rest
-    /// position, rad (m). Returns `None` if all three are zero, because there is no spring then.
+    /// position, rad (m). Returns `None` if all three are zero, which means that there is no spring.
     pub fn new(stiffness: f64, cubic_stiffness: f64, rest_position: f64) -> Option<Self> {
         let is_given = [stiffness, cubic_stiffness, rest_position] != [0.0; 3];
         is_given.then_some(Self { stiffness, cubic_stiffness, rest_position })
@@ -60,8 +60,8 @@ impl JointSpring {
     /// Checks the spring of the joint with the name `joint`.
     ///
     /// # Errors
-    /// [`ModelError`] for a value that is not finite or above 1e20, a negative stiffness, a rest position
-    /// without stiffness, or a negative cubic stiffness without a linear one.
+    /// [`ModelError`] for a value that is not finite or exceeds 1e20 in magnitude, a negative stiffness, a
+    /// rest position without any stiffness, or a negative cubic stiffness without a linear one.
     pub(super) fn check(&self, joint: &str, is_prismatic: bool) -> Result<(), ModelError> {
         let [linear, cubic] = if is_prismatic { ["N/m", "N/m3"] } else { ["N m/rad", "N m/rad3"] };
         let Self { stiffness, cubic_stiffness, rest_position } = *self;

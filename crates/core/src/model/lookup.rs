@@ -4,10 +4,10 @@ use super::error::ModelError;
 use super::tree::Model;
 
 impl Model {
-    /// Returns the index of the frame `name`.
+    /// Returns the index of the frame `name` in [`Model::frames`].
     ///
     /// # Errors
-    /// [`ModelError::UnknownName`], which suggests the closest name.
+    /// [`ModelError::UnknownName`], which suggests a similar name if there is one.
     pub fn frame(&self, name: &str) -> Result<usize, ModelError> {
         find("frame", name, self.frame_names())
     }
@@ -16,15 +16,15 @@ impl Model {
     /// base has index 0.
     ///
     /// # Errors
-    /// [`ModelError::UnknownName`], which suggests the closest name.
+    /// [`ModelError::UnknownName`], which suggests a similar name if there is one.
     pub fn joint(&self, name: &str) -> Result<usize, ModelError> {
         find("joint", name, self.joint_names())
     }
 
-    /// Returns the index of the body `name`.
+    /// Returns the index of the body `name`; the base has index 0.
     ///
     /// # Errors
-    /// [`ModelError::UnknownName`], which suggests the closest name.
+    /// [`ModelError::UnknownName`], which suggests a similar name if there is one.
     pub fn body(&self, name: &str) -> Result<usize, ModelError> {
         find("body", name, self.body_names())
     }
@@ -51,7 +51,7 @@ impl Model {
     }
 }
 
-/// Returns the index of `name` in `names`.
+/// Returns the index of `name` in `names`. The error calls the object `what`, such as `joint`.
 ///
 /// # Errors
 /// [`ModelError::UnknownName`] if `name` is not among `names`.

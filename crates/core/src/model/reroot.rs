@@ -14,7 +14,9 @@ impl Model {
     /// numbered depth first from the new base.
     ///
     /// # Errors
-    /// [`ModelError::UnknownName`] if the robot has no such link.
+    /// [`ModelError::UnknownName`] if the robot has no such link, and the errors of [`ModelBuilder::build`]
+    /// and [`ModelBuilder::add`]. Among them is [`ModelError::IndefiniteInertia`] for a link whose indefinite
+    /// inertia is accepted only while a fixed joint connects it to its parent.
     pub fn rerooted(&self, link: &str) -> Result<Self, ModelError> {
         let mut builder = ModelBuilder::from_description(self.description().rerooted(link)?)?;
         builder.keep_notes(self);
@@ -56,8 +58,8 @@ impl Description {
         })
     }
 
-    /// Returns the links that are connected to `link` by a joint, in the order of declaration. Each is paired
-    /// with its joint as traversed from `link`.
+    /// Returns the links that are connected to `link` by a joint, in the order of declaration of the joints.
+    /// Each is paired with its joint as traversed from `link`.
     fn neighbours(&self, link: usize) -> impl Iterator<Item = (usize, Joint)> {
         self.joints.iter().enumerate().filter_map(move |(j, (parent, joint))| match (*parent, j + 1) {
             (parent, child) if parent == link => Some((child, joint.clone())),

@@ -24,7 +24,7 @@ pub enum Axis {
 /// parent and no joint.
 #[derive(Clone, Debug)]
 pub struct Node {
-    /// Index of the parent body, which is smaller than the index of the body.
+    /// Index of the parent body, which is smaller than the index of the body; 0 for the base.
     pub parent: usize,
     /// True if the body has children other than the body with the next index.
     pub is_fork: bool,
@@ -46,7 +46,8 @@ pub struct Node {
     pub rotor_inertia: f64,
 }
 
-/// Parameters of a joint other than its geometry. The simulation uses them; the dynamics algorithms do not.
+/// Name, damping, friction, limits and spring of a joint, and its axis in the axes of the child link. The
+/// simulation and the controls use these properties; the dynamics algorithms use [`Node`] instead.
 #[derive(Clone, Debug)]
 pub struct JointProperties {
     /// Name of the joint.
@@ -122,7 +123,7 @@ impl Model {
         &self.nodes
     }
 
-    /// Returns true if a joint has Coulomb friction.
+    /// Returns true if at least one joint has Coulomb friction, whether static or kinetic.
     pub fn has_friction(&self) -> bool {
         self.joints.iter().any(|joint| joint.static_friction > 0.0)
     }
@@ -142,7 +143,7 @@ impl Model {
         &self.frames
     }
 
-    /// Returns the frame of the link whose name is that of the body with the index `body`.
+    /// Returns the frame of the link that gives the body with the index `body` its name.
     pub fn body_frame(&self, body: usize) -> &Frame {
         &self.frames[self.body_frames[body]]
     }

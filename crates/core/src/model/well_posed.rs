@@ -38,8 +38,11 @@ pub(super) fn check_well_posed(model: &Model) -> Result<(), ModelError> {
     }
 }
 
-/// Returns the names of the joints between a base without inertia and the first body with inertia, if they
-/// form a single chain, such as the dummy joints of a mobile robot on a fixed world.
+/// Returns the names of the joints of the chain of bodies without inertia that begins with the base, such as
+/// the dummy joints of a mobile robot on a fixed world.
+///
+/// The chain ends at the first body with inertia or with several children. The list is empty if the base
+/// itself is such a body.
 fn massless_chain(model: &Model) -> Vec<String> {
     let is_empty = |node: &&Node| node.mass == 0.0 && node.about_com.to_nalgebra().amax() == 0.0;
     let count = model.nodes.iter().take_while(is_empty).take_while(|node| !node.is_fork).count();

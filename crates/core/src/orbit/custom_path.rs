@@ -27,7 +27,7 @@ pub struct PathPoints {
     /// Velocities, m/s; with `None`, they follow from the interpolated positions.
     pub velocities: Option<Vec<Vector3<f64>>>,
     /// Accelerations, m/s², which require velocities; with `None`, they follow from the interpolated
-    /// positions.
+    /// positions and velocities.
     pub accelerations: Option<Vec<Vector3<f64>>>,
     /// Attitudes: unit quaternions (x, y, z, w) of the rotations from the axes of the path's frame to `I`;
     /// with `None`, the path's frame is the LVLH frame.
@@ -96,8 +96,12 @@ impl CustomPath {
         self.attitude.is_some()
     }
 
-    /// Returns the time within the span of the path that is nearest to `t`, s, and the difference of `t` from
-    /// that time, s.
+    /// Returns the time within the span of the path that is nearest to `t`, s, and the time, s, by which a
+    /// path that coasts is continued to `t`.
+    ///
+    /// # Errors
+    /// [`PathError::TimeOutOfPath`] if the path does not coast and `t` is outside the span by more than
+    /// rounding; [`OrbitError::NotFinite`] and [`OrbitError::TooLarge`] for `t`.
     fn clamped(&self, t: f64) -> Result<(f64, f64), OrbitError> {
         super::error::finite("time", t)?;
         let (start, end) = self.span();

@@ -3,9 +3,9 @@
 use super::path_error::PathError;
 use super::sgp4::{ElementSetError, Sgp4Error};
 use crate::gravity::GravityError;
-use crate::number_text::{count, short, unlike};
+use crate::number_text::{count, exact, short, unlike};
 
-/// Errors of the `orbit` module; each holds the offending numbers.
+/// Errors of the `orbit` module, with the offending values.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum OrbitError {
@@ -26,7 +26,7 @@ pub enum OrbitError {
     },
     /// An orbit has an epoch, but the reference has none.
     #[error(
-        "the epoch of the orbit is {epoch}, but its reference orbit has no epoch; give an earth with an epoch"
+        "the epoch of the orbit is {epoch}, but its reference orbit has no epoch; give 'earth' with an epoch"
     )]
     NoEpoch {
         /// Epoch of the orbit.
@@ -35,8 +35,8 @@ pub enum OrbitError {
     /// The axes of an orbit and of its reference orbit differ, and no Earth with an epoch is given to convert
     /// them.
     #[error(
-        "the orbit has {orbit} axes, but its reference orbit has {reference} axes; give an earth with an epoch, which converts \
-         them"
+        "the orbit has {orbit} axes, but its reference orbit has {reference} axes; give 'earth' with an \
+         epoch, which converts the axes"
     )]
     OtherAxes {
         /// Axes of the orbit.
@@ -52,8 +52,8 @@ pub enum OrbitError {
         /// Given value: infinite or NaN.
         value: f64,
     },
-    /// A quantity is out of its range.
-    #[error("{name} is {value}; expected {expected}", value = short(*value))]
+    /// An input is outside its accepted range.
+    #[error("{name} is {value}; expected {expected}", value = exact(*value))]
     OutOfRange {
         /// Name of the input.
         name: &'static str,
@@ -65,7 +65,7 @@ pub enum OrbitError {
     /// A number is so large that products of several such numbers would overflow.
     #[error(
         "{name} is {value}; it must lie between -1e60 and 1e60 (in SI units)",
-        value = short(*value)
+        value = exact(*value)
     )]
     TooLarge {
         /// Name of the input.
@@ -91,7 +91,7 @@ pub enum OrbitError {
     #[error(
         "semi-major axis is {semi_major_axis} m with eccentricity {eccentricity}; it must be positive below \
          eccentricity 1 and negative above 1",
-        semi_major_axis = short(*semi_major_axis), eccentricity = short(*eccentricity)
+        semi_major_axis = short(*semi_major_axis), eccentricity = exact(*eccentricity)
     )]
     AxisSign {
         /// Semi-major axis, m.
@@ -122,7 +122,7 @@ pub enum OrbitError {
     /// The orbit is not an ellipse, but secular rates and relative elements are defined only for ellipses.
     #[error(
         "eccentricity is {eccentricity}; it must be below 1, because secular rates and relative elements require an ellipse",
-        eccentricity = short(*eccentricity)
+        eccentricity = exact(*eccentricity)
     )]
     NotClosed {
         /// Eccentricity.
@@ -132,7 +132,7 @@ pub enum OrbitError {
     #[error(
         "the chief's inclination is {inclination} rad; its sine must exceed 1e-6, because an equatorial orbit has no \
          node and no relative elements; use local coordinates",
-        inclination = short(*inclination)
+        inclination = exact(*inclination)
     )]
     Equatorial {
         /// Inclination of the chief, rad.
@@ -153,7 +153,7 @@ pub enum OrbitError {
     /// The inclination lies outside [0, π].
     #[error(
         "inclination is {value} rad; it must lie between 0 and π (are these degrees?)",
-        value = short(*value)
+        value = exact(*value)
     )]
     Inclination {
         /// Given value, rad.
@@ -188,24 +188,25 @@ pub enum OrbitError {
         /// Limit that the sine must exceed.
         limit: f64,
     },
-    /// The local orbital frame is undefined.
+    /// The local orbital frame is undefined, because position and velocity are parallel or one of them is
+    /// zero.
     #[error(
-        "the local orbital frame is undefined: the sine of the angle between position ({radius} m) and velocity \
-         ({speed} m/s) is {sine}; the velocity must be neither zero nor parallel to the position",
-        radius = short(*radius), speed = short(*speed), sine = short(*sine)
+        "the local orbital frame is undefined: position ({radius} m) and velocity ({speed} m/s) must be \
+         nonzero and not parallel{sine}; give an orbit that is not rectilinear",
+        radius = short(*radius), speed = short(*speed), sine = sine_between(*sine)
     )]
     UndefinedFrame {
         /// Distance from the planet's centre, m.
         radius: f64,
         /// Speed, m/s.
         speed: f64,
-        /// Sine of the angle between position and velocity.
+        /// Sine of the angle between position and velocity; NaN if one of them is zero.
         sine: f64,
     },
     /// The time is so far from the epoch that the state would be inaccurate.
     #[error(
         "time is {time} s; it must be within {limit} s of the epoch, {epoch} s",
-        time = short(*time), epoch = short(*epoch), limit = short(*limit)
+        time = exact(*time), epoch = short(*epoch), limit = short(*limit)
     )]
     TimeOutOfRange {
         /// Given value, s.
@@ -224,6 +225,28 @@ pub enum OrbitError {
         expected: usize,
         /// Number of elements of the given array.
         got: usize,
+    },
+    /// The output arrays of a propagation do not have one row per time.
+    #[error(
+        "the arrays of positions and velocities have {got}; expected {expected}, one per time",
+        got = count(*got, "row")
+    )]
+    WrongRows {
+        /// Number of times.
+        expected: usize,
+        /// Number of rows.
+        got: usize,
+    },
+    /// A row beyond the last row of the output arrays is set.
+    #[error(
+        "row {index} does not exist; the arrays of positions and velocities have {rows}",
+        rows = count(*rows, "row")
+    )]
+    UnknownRow {
+        /// Index of the row, counted from 0.
+        index: usize,
+        /// Number of rows.
+        rows: usize,
     },
     /// The orbit lies inside the planet.
     #[error(
@@ -307,6 +330,15 @@ pub(crate) fn finite(name: &'static str, value: f64) -> Result<f64, OrbitError> 
 /// Returns `value`, or an error if it is not positive, too large or not finite.
 pub(crate) fn positive(name: &'static str, value: f64) -> Result<f64, OrbitError> {
     if finite(name, value)? > 0.0 { Ok(value) } else { Err(OrbitError::NotPositive { name, value }) }
+}
+
+/// Returns the part of a message that states the sine of the angle between position and velocity, or an empty
+/// text if the sine is not finite.
+fn sine_between(sine: f64) -> String {
+    match sine.is_finite() {
+        true => format!(" (the sine of the angle between them is {})", short(sine)),
+        false => String::new(),
+    }
 }
 
 /// Returns ` (it is …)` with the sine of an angle, with enough digits to distinguish it from `limit`, or an

@@ -82,8 +82,8 @@ impl From<&Lvlh> for Nadir {
     }
 }
 
-/// Frame attached to a reference orbit, letter `P`: the attitude given for a path, or else the local orbital
-/// frame.
+/// Frame attached to a reference orbit, letter `P`. It has the attitude given for the reference; without one,
+/// it is the local orbital frame [`Lvlh`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathFrame {
     /// Rotation from `P` axes to `I` axes.

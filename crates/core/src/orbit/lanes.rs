@@ -4,8 +4,8 @@ use super::{Orbit, OrbitError, StateRows};
 use crate::spatial::{Real, Vec3};
 
 /// Fills `rows` with states computed by `kernel` on the SIMD lanes of `S`. `kernel` converts one time per
-/// lane, s, to positions (m) and velocities (m/s). If it returns `None`, those instants are evaluated
-/// individually.
+/// lane, s, to positions (m) and velocities (m/s). If it returns `None`, the instants of that call are
+/// evaluated individually.
 pub(super) fn fill_lanes<S: Real>(
     orbit: &impl Orbit,
     times: &[f64],

@@ -1,6 +1,6 @@
 //! Errors of paths through given points.
 
-use crate::number_text::{count, short, unlike};
+use crate::number_text::{count, exact, short, unlike};
 use crate::spatial::SplineError;
 
 /// Errors of paths: invalid points, or a time outside the path.
@@ -14,7 +14,7 @@ pub enum PathError {
     WrongLength { name: &'static str, expected: usize, got: usize },
     #[error(
         "{name}[{index}] holds {value}; expected finite numbers between -1e60 and 1e60 (SI units)",
-        value = short(*value)
+        value = exact(*value)
     )]
     NotFinite { name: &'static str, index: usize, value: f64 },
     #[error(
@@ -31,10 +31,10 @@ pub enum PathError {
     )]
     QuaternionNorm { index: usize, norm: f64 },
     #[error(
-        "the attitude rotates by {angle} rad from point {before} to point {index}; it must rotate by at most 2 rad, \
-         so that the direction of the rotation is clear; give points that are closer in time",
+        "the attitude rotates by {angle} rad from point {before} to point {index}; it must rotate by at \
+         most 2 rad, so that the direction of the rotation is clear; give intermediate points",
         before = index - 1,
-        angle = short(*angle)
+        angle = unlike(*angle, &[2.0])
     )]
     TurnTooFar { index: usize, angle: f64 },
     #[error(

@@ -6,7 +6,7 @@ use crate::gravity::Gravity;
 use nalgebra::Vector3;
 use std::sync::Arc;
 
-/// Orbit whose state is a function of time.
+/// Reference orbit: a motion whose position, velocity and acceleration are functions of time.
 pub trait Orbit: Send + Sync + std::fmt::Debug {
     /// Returns the gravitational parameter of the planet, m³/s²; `None` without a planet.
     fn mu(&self) -> Option<f64>;
@@ -52,7 +52,7 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
     }
 
     /// Computes at most `most_steps` integration steps in each direction towards `times`, s. Returns true if
-    /// no further step is needed.
+    /// no further step is needed or possible; for an orbit that is not integrated, always returns true.
     ///
     /// Results do not depend on this call. It lets callers divide a long integration into parts that can be
     /// interrupted.

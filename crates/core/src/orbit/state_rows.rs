@@ -32,7 +32,7 @@ impl<'a> StateRows<'a> {
     /// Writes a position, m, and a velocity, m/s, to row `index`.
     ///
     /// # Errors
-    /// [`OrbitError::WrongLength`] for a row beyond the last.
+    /// [`OrbitError::UnknownRow`] for a row beyond the last.
     pub fn set(
         &mut self,
         index: usize,
@@ -41,7 +41,7 @@ impl<'a> StateRows<'a> {
     ) -> Result<(), OrbitError> {
         let (count, end) = (self.positions.len() / 3, index.saturating_add(1));
         if end > count {
-            return Err(OrbitError::WrongLength { name: "rows", expected: end, got: count });
+            return Err(OrbitError::UnknownRow { index, rows: count });
         }
         self.positions[3 * index..][..3].copy_from_slice(position.as_slice());
         self.velocities[3 * index..][..3].copy_from_slice(velocity.as_slice());
@@ -51,7 +51,7 @@ impl<'a> StateRows<'a> {
     /// Checks that the number of rows equals the number of `times`.
     pub(super) fn check(&self, times: &[f64]) -> Result<(), OrbitError> {
         let (expected, got) = (times.len(), self.positions.len() / 3);
-        if expected == got { Ok(()) } else { Err(OrbitError::WrongLength { name: "rows", expected, got }) }
+        if expected == got { Ok(()) } else { Err(OrbitError::WrongRows { expected, got }) }
     }
 
     #[inline(always)]

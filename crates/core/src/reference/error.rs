@@ -1,6 +1,6 @@
 //! Errors of references.
 
-use crate::number_text::{count, indices, list, short};
+use crate::number_text::{choice, count, exact, exact_list, unlike};
 use crate::orbit::OrbitError;
 use crate::spatial::SplineError;
 
@@ -10,51 +10,55 @@ use crate::spatial::SplineError;
 pub enum ReferenceError {
     #[error(
         "'{name}' of the reference contains {value}; expected finite numbers between -1e60 and 1e60 (SI units)",
-        value = short(*value)
+        value = exact(*value)
     )]
     NotFinite { name: &'static str, value: f64 },
     #[error("the array '{name}' of the reference has {got}; expected {expected}", got = count(*got, "number"))]
     WrongLength { name: &'static str, expected: usize, got: usize },
     #[error(
         "the duration of the reference is {value} s; it must be finite and at least 1e-12 s",
-        value = short(*value)
+        value = exact(*value)
     )]
     DurationNotPositive { value: f64 },
     #[error(
         "the ramp of the reference is {value}; it must be above 0 and at most 0.5, as a fraction of the duration",
-        value = short(*value)
+        value = exact(*value)
     )]
     Ramp { value: f64 },
     #[error(
         "the limit '{name}' of the reference is {value}; it must be positive (omit it for no limit)",
-        value = short(*value)
+        value = exact(*value)
     )]
     LimitNotPositive { name: String, value: f64 },
     #[error(
-        "none of the given limits applies to the motion of the reference, so its duration is undetermined; give a \
-         duration or times, or limit a rate or acceleration of this motion"
+        "the limits do not determine the duration of the reference, because it does not move or no limit \
+         applies to its motion; give a duration or times, or limit a rate or acceleration of this motion"
     )]
     NoLimit,
     #[error(
-        "points {point} and {next} of the reference coincide, so the limits do not determine the time between \
-         them; remove one of the points, or give times",
+        "the limits do not determine the time between points {point} and {next} of the reference, because the \
+         points coincide or no limit applies to the motion between them; remove one of the points, give times, or \
+         limit this motion",
         next = point + 1
     )]
     SamePoint { point: usize },
-    #[error("the axis of the reference has length {length}; give a vector with a length of at least 1e-9", length = short(*length))]
+    #[error(
+        "the axis of the reference has length {length}; give a vector with a length of at least 1e-9",
+        length = unlike(*length, &[1e-9])
+    )]
     NoAxis { length: f64 },
     #[error(
-        "the reference moves joint {joint}, but the robot has {known}; give one of these indices",
-        known = indices(*count, "joint")
+        "the reference moves joint {joint}, but the robot has {known}",
+        known = choice(*count, "joint")
     )]
     NoJoint { joint: usize, count: usize },
     #[error(
         "the upper left 3 × 3 block R of the pose is not a rotation matrix: RᵀR differs from the identity, or det R \
          from 1, by {error}, but both must agree within 1e-6; give an orthonormal, right-handed R",
-        error = short(*error)
+        error = unlike(*error, &[1e-6])
     )]
     NotARotation { error: f64 },
-    #[error("the last row of the pose is {row}; it must be [0, 0, 0, 1]", row = list(row))]
+    #[error("the last row of the pose is {row}; it must be [0, 0, 0, 1]", row = exact_list(row))]
     LastRow { row: [f64; 4] },
     #[error("the points of the reference do not define a curve: {0}")]
     Spline(#[from] SplineError),

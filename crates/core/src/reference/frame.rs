@@ -64,8 +64,8 @@ impl Target {
     /// `velocity`, m/s, and angular velocity `spin`, rad/s, in W axes.
     ///
     /// # Errors
-    /// [`ReferenceError::NotFinite`] for numbers that are not finite; [`ReferenceError::NotARotation`] for
-    /// `rot_wt`.
+    /// [`ReferenceError::NotFinite`] for numbers that are not finite or exceed 1e60 in magnitude;
+    /// [`ReferenceError::NotARotation`] for `rot_wt`.
     pub fn new(
         rot_wt: Matrix3<f64>,
         pos_w: Vector3<f64>,
@@ -79,7 +79,7 @@ impl Target {
     /// [`Target::new`].
     ///
     /// # Errors
-    /// [`ReferenceError::NotFinite`] for numbers that are not finite.
+    /// [`ReferenceError::NotFinite`] for numbers that are not finite or exceed 1e60 in magnitude.
     pub fn at(start: Hold, velocity: Vector3<f64>, spin: Vector3<f64>) -> Result<Self, ReferenceError> {
         check_numbers("velocity", &velocity)?;
         check_numbers("spin", &spin)?;

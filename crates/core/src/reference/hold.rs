@@ -16,8 +16,8 @@ impl Hold {
     /// Creates a reference at the constant pose `(rot_fd, pos_f)`, m, in the frame of the reference.
     ///
     /// # Errors
-    /// [`ReferenceError::NotFinite`] for numbers that are not finite; [`ReferenceError::NotARotation`] for
-    /// `rot_fd`.
+    /// [`ReferenceError::NotFinite`] for numbers that are not finite or exceed 1e60 in magnitude;
+    /// [`ReferenceError::NotARotation`] for `rot_fd`.
     pub fn new(rot_fd: Matrix3<f64>, pos_f: Vector3<f64>) -> Result<Self, ReferenceError> {
         check_numbers("pose", rot_fd.iter().chain(&pos_f))?;
         let error = (rot_fd.transpose() * rot_fd - Matrix3::identity()).amax();

@@ -59,7 +59,7 @@ impl JointHold {
     /// Creates a reference at the constant positions `q`, rad or m.
     ///
     /// # Errors
-    /// [`ReferenceError::NotFinite`] for positions that are not finite.
+    /// [`ReferenceError::NotFinite`] for positions that are not finite or exceed 1e60 in magnitude.
     pub fn new(q: Vec<f64>) -> Result<Self, ReferenceError> {
         check_numbers("q", &q)?;
         Ok(Self { q })

@@ -21,9 +21,9 @@ impl JointSpline {
     /// factor such that the whole path respects the limits.
     ///
     /// # Errors
-    /// [`ReferenceError`] for fewer than two points, wrong lengths, numbers that are not finite, times that
-    /// do not increase, and limits that are not positive or do not determine the times; with limits, also for
-    /// successive points that coincide.
+    /// [`ReferenceError`] for fewer than two points, wrong lengths, numbers that are not finite or exceed
+    /// 1e60 in magnitude, times that do not increase, and limits that are not positive or do not determine
+    /// the times; with limits, also for successive points that coincide.
     pub fn waypoints(
         count: usize,
         points: &[f64],
@@ -85,8 +85,8 @@ impl JointSpline {
     /// last time.
     ///
     /// # Errors
-    /// [`ReferenceError`] for fewer than two samples, wrong lengths, numbers that are not finite, or times
-    /// that do not increase.
+    /// [`ReferenceError`] for fewer than two samples, wrong lengths, numbers that are not finite or exceed
+    /// 1e60 in magnitude, or times that do not increase.
     pub fn sampled(
         count: usize,
         times: &[f64],

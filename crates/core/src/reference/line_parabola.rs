@@ -25,7 +25,8 @@ impl LineParabola {
     /// vectors are in the axes of the frame of the reference.
     ///
     /// # Errors
-    /// [`ReferenceError`] for an invalid pose, numbers that are not finite, or a duration below 1e-12 s.
+    /// [`ReferenceError`] for an invalid pose, numbers that are not finite or exceed 1e60 in magnitude, or a
+    /// duration below 1e-12 s.
     pub fn new(
         rot_fd: Matrix3<f64>,
         pos_f: Vector3<f64>,

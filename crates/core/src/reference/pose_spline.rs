@@ -63,8 +63,8 @@ impl PoseSpline {
     /// time.
     ///
     /// # Errors
-    /// [`ReferenceError`] for fewer than two samples, wrong lengths, numbers that are not finite, times that
-    /// do not increase, or successive attitudes half a turn apart.
+    /// [`ReferenceError`] for fewer than two samples, wrong lengths, numbers that are not finite or exceed
+    /// 1e60 in magnitude, times that do not increase, or successive attitudes half a turn apart.
     pub fn sampled(
         times: &[f64],
         poses: &[Hold],

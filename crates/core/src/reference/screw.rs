@@ -28,8 +28,8 @@ impl Screw {
     /// attitude rotates with the motion if `turns` is true; otherwise it is constant.
     ///
     /// # Errors
-    /// [`ReferenceError::NotFinite`] for numbers that are not finite; [`ReferenceError::NoAxis`] for too
-    /// short an axis.
+    /// [`ReferenceError::NotFinite`] for numbers that are not finite or exceed 1e60 in magnitude;
+    /// [`ReferenceError::NoAxis`] for an axis that is too short.
     pub fn new(
         start: Hold,
         center: Vector3<f64>,

@@ -22,9 +22,9 @@ impl Hold {
     }
 }
 
-/// Samples a reference at many `times` (T,), s: poses (T, 4, 4), velocities and accelerations (T, 6). They
-/// are those of the path in the frame of the reference if `in_own_frame` is true, otherwise those that
-/// [`TaskReference::sample`] returns.
+/// Samples a reference at many `times` (T,), s: poses (T, 4, 4), velocities and accelerations (T, 6), in the
+/// units of [`TaskSample`](super::TaskSample). They are those of the path in the frame of the reference if
+/// `in_own_frame` is true, otherwise those that [`TaskReference::sample`] returns.
 ///
 /// # Errors
 /// [`ReferenceError::WrongLength`] for outputs of the wrong length, and the errors of
@@ -52,7 +52,8 @@ pub fn task_table(
     Ok(())
 }
 
-/// Samples a joint path at many `times` (T,), s: positions, rates and accelerations (T, n).
+/// Samples a joint path at many `times` (T,), s: positions, rates and accelerations (T, n), in the units of
+/// [`JointSample`].
 ///
 /// # Errors
 /// [`ReferenceError::WrongLength`] for outputs of the wrong length.

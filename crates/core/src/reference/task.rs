@@ -23,8 +23,8 @@ impl<P: TaskPath + 'static> From<P> for TaskReference {
 
 impl TaskReference {
     /// Returns the desired motion at simulation time `t`, s, on a path that starts at `start`, s. The motion
-    /// is in W axes, or in base axes if [`TaskReference::is_relative_to_base`]. For a frame of another
-    /// system, the present motion of that frame is used.
+    /// is in W axes, or in base axes if [`TaskReference::is_relative_to_base`] returns true. For a frame of
+    /// another system, the present motion of that frame is used.
     ///
     /// # Errors
     /// [`ReferenceError::Orbit`] if the local orbital frame L is not defined at `t`.
@@ -63,7 +63,7 @@ impl TaskReference {
 
     /// Returns the distance, m, and the angle, rad, between a frame with the pose `(rot, pos)` and the start
     /// of the reference at the time `start`, s. The pose is relative to the base, in base axes, if
-    /// [`TaskReference::is_relative_to_base`]; otherwise it is in W.
+    /// [`TaskReference::is_relative_to_base`] returns true; otherwise it is in W.
     ///
     /// # Errors
     /// The errors of [`TaskReference::sample`].

@@ -20,7 +20,8 @@ type Equations<'a, S> = EquationsOfMotion<'a, S, EnvironmentLoads>;
 /// estimates its errors itself; the errors of an external engine are not estimated.
 pub(super) struct Accuracy<S> {
     doubling: Option<StepDoubling<S>>,
-    /// Checks that are evaluated at every step, one entry per tree; empty if every step is recorded.
+    /// Checks that are evaluated at every step, one entry per tree; empty with an adaptive integrator or an
+    /// external engine, and if the recorded rows are sufficient for these checks.
     every_step: Vec<EveryStep>,
     /// True if the certificate checks the base rows of inverse dynamics for the current step.
     is_recorded: bool,
@@ -174,7 +175,8 @@ impl<S: Scalar> Accuracy<S> {
     }
 
     /// Returns the error estimates of the tree with index `number` after `steps` steps. `rotation_error` is
-    /// the accumulated attitude error of an adaptive integrator, rad; `None` for a fixed-step integrator.
+    /// the accumulated attitude error of an adaptive integrator, rad; `None` for a fixed-step integrator and
+    /// for an external engine.
     pub(super) fn estimates(&self, number: usize, steps: usize, rotation_error: Option<f64>) -> Estimates {
         let checks = self.every_step.get(number).map(EveryStep::checks);
         let Some(doubling) = &self.doubling else {

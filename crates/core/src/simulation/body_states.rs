@@ -1,4 +1,4 @@
-//! Conversion between the states of systems in base axes and the blocks of body states in W that effects use.
+//! Conversion between the states of systems in base axes and the arrays of body states in W that effects use.
 
 use crate::dynamics::{BodyData, Data, base_rotation};
 use crate::environment::{Bodies, BodyMotion, BodyState, Wrenches, on_lanes};

@@ -69,7 +69,7 @@ impl<S: Scalar> RunState<'_, S> {
         (tree, in_tree)
     }
 
-    /// Returns the record of a brake that has been engaged or disengaged, with the impulse, N m s or N s, on
+    /// Returns the record of the engagement or disengagement of a brake, with the impulse, N m s or N s, on
     /// its joint and the energy lost, J.
     fn record_of_brake(
         &self,

@@ -6,7 +6,7 @@ use super::modes::AT_LIMIT;
 use super::settings::Simulation;
 use super::state_range::{UNIT_NORM, attitude_norm, check_range, unit_of};
 use crate::contact::{Contact, ContactError};
-use crate::control::check_controls;
+use crate::control::{ControlError, check_controls};
 use crate::environment::BodyIndex;
 use crate::model::{BASE_NQ, Model};
 use crate::world::{
@@ -21,16 +21,23 @@ impl Simulation {
     /// which references are given.
     ///
     /// # Errors
-    /// A [`SimulationError`] for the first invalid setting: an initial state of the wrong length, outside its
-    /// range, or with a quaternion that does not have unit norm; a joint that starts beyond its limits when
-    /// these are enforced; a time step, tolerance or other number outside its range; an effect or a gravity
-    /// field without the orbit that it requires, or a gravity field that does not match the orbit; an effect
-    /// that acts on no system, or two effects that count the same force on a body twice; an Earth whose epoch
-    /// or axes differ from those of the orbit; invalid names, brakes, events, contacts or controls; a closed
-    /// loop or mimic joint whose constraint the initial state violates; a setting that an external engine
-    /// does not support; a reference in an unknown frame; a reference without a tool; a reference that starts
-    /// too far from the tool or the joints that follow it; a gripper without opposing fingers, or one whose
-    /// opening is narrower than the object.
+    /// A [`SimulationError`] for the first invalid setting:
+    ///
+    /// - an initial state of the wrong length, outside its range, or with a quaternion that does not have
+    ///   unit norm,
+    /// - a joint that starts beyond its limits when these are enforced,
+    /// - a time step, tolerance or other number outside its range,
+    /// - an effect or a gravity field without the orbit that it requires, or a gravity field that does not
+    ///   match the orbit,
+    /// - an effect that acts on no system, or two effects that count the same force on a body twice,
+    /// - an Earth whose epoch or axes differ from those of the orbit,
+    /// - invalid names, brakes, events, contacts or controls,
+    /// - a closed loop or mimic joint whose constraint the initial state violates,
+    /// - a setting that an external engine does not support,
+    /// - a tool or a tracked frame that does not exist, or a reference in an unknown frame,
+    /// - a reference without a tool, or a controller that tracks another frame than the tool,
+    /// - a reference that starts too far from the frame or the joints that follow it,
+    /// - a gripper without opposing fingers, or one whose opening is narrower than the object.
     pub fn check(&self) -> Result<(), SimulationError> {
         self.check_each(|system| check_state(&system.model, &system.q, &system.v))?;
         SimulationError::check_positive("time_step", self.time_step)?;
@@ -58,7 +65,7 @@ impl Simulation {
             gravity.check_orbit(mu.ok_or_else(missing)?)?;
         }
         if let Some(effect) = self.effects.iter().find(|effect| effect.requires_orbit() && !has_planet) {
-            return Err(SimulationError::NeedsOrbit { effect: effect.name().to_owned() });
+            return Err(SimulationError::NeedsOrbit { effect: format!("the effect '{}'", effect.name()) });
         }
         self.check_effects()?;
         if let (Some(orbit), Some(earth)) = (&self.orbit, &self.earth) {
@@ -76,10 +83,26 @@ impl Simulation {
         }
         self.place_moving_frames()?;
         self.check_each(check_system)?;
-        self.check_each(|system| self.check_grips(system))
+        self.check_each(|system| self.check_grips(system))?;
+        self.check_loads()
     }
 
-    /// Checks each system. If there are several, an error contains the name of the system.
+    /// Returns an error for a control that moves a load of a system that its own system does not know.
+    fn check_loads(&self) -> Result<(), SimulationError> {
+        for System { name: system, controls, knows, .. } in &self.systems {
+            let loads = controls.iter().filter_map(|control| Some((control, control.load?.system)));
+            if let Some((control, other)) = loads.into_iter().find(|(_, other)| !knows.contains(other)) {
+                let (control, system) = (control.name.clone(), system.clone());
+                let other =
+                    self.systems.get(other).map_or_else(|| other.to_string(), |other| other.name.clone());
+                return Err(ControlError::UnknownLoad { control, system, other }.into());
+            }
+        }
+        Ok(())
+    }
+
+    /// Applies `check` to each system. If there are several systems, an error contains the name of the system
+    /// that it concerns.
     fn check_each(
         &self,
         check: impl Fn(&System) -> Result<(), SimulationError>,
@@ -100,7 +123,7 @@ impl Simulation {
         };
         let computed = self.engine.as_ref().map_or_else(Vec::new, |engine| engine.contacts());
         if let Some(contact) = self.contacts.iter().find(|contact| contact.impact.is_some()) {
-            let remedy = "use a compliant normal force, such as HuntCrossley, or the native engine";
+            let remedy = "use a compliant normal force, such as HuntCrossley";
             return cannot(&contact.name, "a contact with an impact law", remedy);
         }
         let with_forces = self.contacts.iter().filter(|contact| contact.law.is_some());
@@ -227,7 +250,7 @@ fn check_seats(events: &[Event], time_step: f64) -> Result<(), SimulationError> 
     for Event { name, action, .. } in events {
         let Action::Capture { seat: Some(Seat { duration, .. }), .. } = action else { continue };
         if *duration < 1e-3 * time_step {
-            let (event, what, unit) = (name.clone(), "the duration of seat", "s");
+            let (event, what, unit) = (name.clone(), "the duration of the seat", "s");
             let expected = "at least a thousandth of time_step";
             return Err(WorldError::Number { event, what, value: *duration, unit, expected }.into());
         }
@@ -267,8 +290,8 @@ fn check_system_controls(system: &System) -> Result<(), SimulationError> {
     check_control_references(model, q, controls, system.reference_start_tolerance)
 }
 
-/// Checks, if the joint limits are enforced, the coefficient of restitution and that the joints start within
-/// these limits.
+/// If the joint limits are enforced, checks that the coefficient of restitution is between 0 and 1 and that
+/// the joints start within their limits.
 fn check_stops(system: &System) -> Result<(), SimulationError> {
     let Some(restitution) = system.stops else { return Ok(()) };
     if !(0.0..=1.0).contains(&restitution) {

@@ -135,8 +135,8 @@ pub(super) struct SystemControllers {
     /// Accelerations that control laws request for joints whose friction they compensate, `(n,)`, rad/s² or
     /// m/s²; `None` for other joints.
     pub(super) requested: Vec<Option<f64>>,
-    /// Torques and requested accelerations before a trial step updated the controllers at the current cut;
-    /// `None` without such an update.
+    /// Torques, `(n,)`, N m or N, and requested accelerations, `(n,)`, rad/s² or m/s², that were held before
+    /// the last trial step that updated the controllers; `None` if no trial step has updated them.
     pub(super) held: Option<(Vec<f64>, Vec<Option<f64>>)>,
     pub(super) controls: Vec<ControlMemory>,
 }
@@ -257,7 +257,7 @@ impl GroupCheckpoint {
         } else if !state.trees.iter().all(has_unit_attitude) {
             "an attitude is not a unit quaternion"
         } else if !has_step {
-            "its step size is not a positive number"
+            "its step size is negative or not finite, or an error scale is negative"
         } else {
             return Ok(());
         };

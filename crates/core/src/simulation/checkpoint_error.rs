@@ -31,6 +31,14 @@ pub enum CheckpointError {
         got = count(*got, "entry")
     )]
     OtherSize { name: &'static str, got: usize, expected: usize },
+    #[error("the checkpoint belongs to another scenario: {difference}; resume with the original scenario")]
+    OtherColumns { difference: String },
+    #[error(
+        "the checkpoint belongs to another scenario: its column '{name}' has {got}, but this simulation \
+         requires {expected}; resume with the original scenario",
+        got = count(*got, "number")
+    )]
+    ColumnLength { name: String, got: usize, expected: usize },
     #[error(
         "the checkpoint belongs to another scenario, a run {duration} with steps of {step} s, from which this run differs \
          in {what}; resume with the original scenario",

@@ -11,7 +11,8 @@ use crate::world::System;
 /// Largest initial opening of a loop or deviation of a mimic joint, m or rad, and largest rate of this error,
 /// m/s or rad/s, that are corrected even if `project` is false for the loop or mimic joint.
 const ACCEPTED: f64 = 1e-6;
-/// Largest opening, m or rad, of a loop that counts as closed.
+/// Largest opening of a loop that counts as closed, or error of a mimic joint that counts as satisfied, m or
+/// rad.
 const CLOSED: f64 = 1e-11;
 
 impl System {
@@ -31,12 +32,14 @@ impl System {
 
 /// Returns a configuration and a velocity with all loops closed: those nearest to the given ones in the
 /// metric of the kinetic energy. Mimic joints that start at zero follow their leaders. Joints for which
-/// `held`, `(n,)`, is true are locked while the velocity is corrected.
+/// `held`, `(n,)`, is true may move while the loops are closed, but are locked while the remaining errors of
+/// the configuration and those of the velocity are corrected.
 ///
 /// # Errors
 /// [`SimulationError::OpenLoop`] for a loop without `project` whose opening exceeds 1e-6 m or rad, or
-/// changes faster than 1e-6 m/s or rad/s; [`SimulationError::OpenMimic`] for a mimic joint with such an
-/// error; [`SimulationError::CannotClose`] for loops that cannot be closed together.
+/// changes faster than 1e-6 m/s or rad/s; [`SimulationError::OpenMimic`] for a mimic joint without `project`
+/// whose position or rate differs by more than these limits from the value that its leader prescribes;
+/// [`SimulationError::CannotClose`] for loops that cannot be closed together.
 pub(crate) fn closed_start(
     model: &Model,
     [mut q, mut v]: [Vec<f64>; 2],
@@ -53,12 +56,23 @@ pub(crate) fn closed_start(
     let is_open = |i: &usize| loops.magnitudes(*i, loops.errors()).iter().any(|error| *error > CLOSED);
     let open: Vec<usize> = (0..loops.closures().len()).filter(is_open).collect();
     if !open.is_empty() {
-        let describe = |i: usize| {
-            let open = opening(loops.magnitudes(i, loops.errors()), ["m", "rad"]);
-            format!("'{}' stays open by {open}", loops.closures()[i].name)
+        let is_mimic = |i: &usize| matches!(loops.closures()[*i].constraint, Constraint::Mimic { .. });
+        let describe = |i: &usize| {
+            let by = opening(loops.magnitudes(*i, loops.errors()), ["m", "rad"]);
+            let name = &loops.closures()[*i].name;
+            match is_mimic(i) {
+                true => format!(
+                    "the mimic joint '{name}' still differs by {by} from the position that its leader \
+                     prescribes"
+                ),
+                false => format!("the loop '{name}' stays open by {by}"),
+            }
         };
-        let open: Vec<String> = open.into_iter().map(describe).collect();
-        return Err(SimulationError::CannotClose { loops: open.join(", ") });
+        let faults: Vec<String> = open.iter().map(describe).collect();
+        let poses = open.iter().any(|i| !is_mimic(i)).then_some("the poses and lengths of the loops");
+        let ratios = open.iter().any(is_mimic).then_some("the ratios and offsets of the mimic joints");
+        let check: Vec<&str> = poses.into_iter().chain(ratios).collect();
+        return Err(SimulationError::CannotClose { faults: faults.join(", "), check: check.join(" and ") });
     }
     kinematics(model, &mut data, &q, &v);
     let rates = loops.rates(&data, &v).to_vec();

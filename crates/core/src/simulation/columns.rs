@@ -11,7 +11,7 @@ use std::fmt;
 pub enum Length {
     /// One entry per row of the trace, `T`.
     Rows,
-    /// One entry per event, `K`.
+    /// One entry per change of the reference orbit, `K`.
     Events,
     /// Constant length, equal for all robots.
     Fixed(usize),
@@ -24,7 +24,7 @@ pub enum Length {
     /// Number of bodies of the robot.
     Bodies,
     /// Number of components of the tracking error of a control, `k`: 6 if the control tracks a frame, 1 if it
-    /// controls a grip force, otherwise one per joint.
+    /// controls a grip force, otherwise one per joint of the control.
     Errors,
 }
 
@@ -65,11 +65,12 @@ pub enum Condition {
     Always,
     /// A joint of the system has a spring.
     Springs,
-    /// A controller compensates Coulomb friction, and the native engine is used.
+    /// A controller compensates Coulomb friction, a joint of the system has such friction, and the native
+    /// engine is used.
     FrictionCompensation,
     /// The system has a tool.
     Tool,
-    /// The system has a tool with a reference.
+    /// The system has a tool, and the tool or a control of the tool has a reference.
     Reference,
     /// The run has an orbit.
     Orbit,
@@ -81,7 +82,7 @@ pub enum Condition {
     Wrenches,
     /// The system is the first side of a contact.
     Contacts,
-    /// The system has closed loops, or a capture by it may close one.
+    /// The system has closed loops, or a capture by the system may close one.
     Loops,
 }
 
@@ -154,7 +155,8 @@ impl Column {
         self.path.replace('*', owner)
     }
 
-    /// Returns the name of the control, effect, contact or loop whose column has this path, if there is one.
+    /// Returns the name of the control, effect, contact or loop whose column has this path; `None` for paths
+    /// of other columns.
     pub fn owner_of<'a>(&self, path: &'a str) -> Option<&'a str> {
         self.path.strip_suffix('*').and_then(|prefix| path.strip_prefix(prefix))
     }
@@ -278,7 +280,7 @@ macro_rules! trace_columns {
             work (T), "J", "W", Always, WHOLE,
                 "Work done on the robot by motors, springs and external wrenches, less the energy dissipated in the joints.";
             dissipated (T), "J", "", Always, WHOLE,
-                "Energy dissipated by the damping, friction and stops of the joints.";
+                "Energy dissipated by the damping, friction, brakes and stops of the joints.";
             spring_energy (T), "J", "", Springs, WHOLE,
                 "Elastic energy of the springs at the joints, a function of their positions.";
             center_of_mass (T, 3), "m", "W", Always, WHOLE, "Position of the centre of mass of the system.";
@@ -354,8 +356,8 @@ pub static LOOPS: Column = column!(
     "W",
     Loops,
     LOOP,
-    "Force of a loop on its second frame, and moment about the point of the loop in that frame; this point; distance \
-     and angle by which the loop is open."
+    "Force on the second frame of a loop, moment on this frame about its origin, position of this origin, and \
+     distance and angle by which the loop is open; zeros while the loop is not closed."
 );
 
 /// Times, s, at which the run changed to a new reference orbit.

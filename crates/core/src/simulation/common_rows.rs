@@ -4,7 +4,8 @@ use super::group_sum::{GroupSum, SystemRow};
 use super::trace::Trace;
 use crate::model::Model;
 
-/// Momentum and kinetic energy of all systems of a world, with one row per time that all traces contain.
+/// Momentum and kinetic energy of all systems of a world, with a row for each time that all traces contain,
+/// or two rows if every trace has two rows at that time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WorldRows {
     /// Times of the rows, s, `(T,)`.

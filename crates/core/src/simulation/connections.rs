@@ -15,7 +15,7 @@ pub(super) struct Connections {
     pub(super) active: ActiveWelds,
 }
 
-/// Active welds, and the roots of the trees into which they connect systems.
+/// Active connections (welds) between systems, and the roots of the trees that they form.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct ActiveWelds {
     pub(super) welds: Vec<Weld>,

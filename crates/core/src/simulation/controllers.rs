@@ -30,8 +30,9 @@ impl<'a, S: Scalar> Controllers<'a, S> {
         Ok(Self { set, tool, reference, sample: None })
     }
 
-    /// Returns the desired motion of the tool at `t`, s, and whether it is relative to the base; `None` if no
-    /// reference is active. Requires the kinematics of `state` in `system`.
+    /// Updates the tracking errors of the controls at `t`, s. Returns the desired motion of the tool and
+    /// whether it is relative to the base; `None` if no reference is active. Requires the kinematics of
+    /// `state` in `system`.
     pub(super) fn desired(
         &mut self,
         t: f64,

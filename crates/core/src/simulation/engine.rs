@@ -78,7 +78,7 @@ pub struct BodyWeld {
     pub rotation: Mat3<f64>,
 }
 
-/// Result of a step.
+/// Output of a step: states at its end, accelerations at its start, and impulses and work during the step.
 #[derive(Clone, Debug)]
 pub struct StepOutput {
     /// Configurations at the end of the step, `(nq,)` of each system, m and rad.
@@ -117,8 +117,8 @@ pub struct Exchange {
     /// Time integral over the step of the external forces and of their moments about the centre of mass of
     /// the system, W axes, N s and N m s.
     pub impulse: [f64; 6],
-    /// Work done by motors and external wrenches during the step, less the energy that the joints dissipate,
-    /// J.
+    /// Work done by motors, springs and external wrenches during the step, less the energy that the joints
+    /// dissipate, J.
     pub work: f64,
     /// Energy that the joints dissipate during the step, J.
     pub dissipated: f64,

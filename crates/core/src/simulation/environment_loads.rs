@@ -216,6 +216,7 @@ fn state_and_rate(orbit: &dyn Orbit, t: f64) -> Result<(OrbitState, Vector3<f64>
 impl EnvironmentLoads {
     /// Computes the wrenches of the effects on the bodies of `systems` at `t`, s, in a step over `interval`,
     /// s, and writes them to the data of the systems. `systems` must contain all systems of these loads.
+    /// Without effects, does nothing.
     pub(super) fn apply_to<S: Scalar>(
         &mut self,
         systems: &mut [LoadedSystem<'_, S>],

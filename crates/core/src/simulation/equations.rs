@@ -21,7 +21,7 @@ pub(crate) struct EquationsOfMotion<'a, S, W> {
     pub(crate) trees: Vec<Tree<'a, S>>,
     /// Places of the systems in the trees.
     pub(crate) members: Members<'a, S>,
-    /// Latches that have not yet closed.
+    /// Latches whose captures have not happened.
     pub(super) latches: Vec<Latch>,
     pub(super) contacts: Contacts,
     pub(crate) loads: W,
@@ -139,8 +139,9 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
     }
 
     /// Determines the modes of the contacts for the step from `t` to `end`, s, and returns the end of the
-    /// step, which is earlier than `end` while bodies touch. The function reduces the contact states in
-    /// `state` to those of the pairs that may touch. Requires the kinematics of `state` in the trees.
+    /// step, which may be earlier than `end` while bodies touch or approach each other. The function reduces
+    /// the contact states in `state` to those of the pairs that may touch. Requires the kinematics of `state`
+    /// in the trees.
     pub(super) fn begin_contacts(
         &mut self,
         t: f64,
@@ -187,8 +188,8 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         self.contacts.correct(hold, &self.trees, state).map_err(at_time(t))
     }
 
-    /// Returns true if a joint of any tree has friction, stops or a brake, if a latch may close, or if bodies
-    /// may touch.
+    /// Returns true if a joint of any tree has friction, stops or a brake, if there is a latch whose capture
+    /// has not happened, or if bodies may touch.
     pub(crate) fn has_modes(&self) -> bool {
         !self.latches.is_empty()
             || !self.contacts.is_empty()
@@ -209,9 +210,9 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         Ok(latches.min(contacts))
     }
 
-    /// Returns two sums over all trees: the kinetic energy less the work, J, which changes only by the error
-    /// of the integrator, and the magnitudes of both, J. Requires the kinematics of `state` relative to W in
-    /// the trees.
+    /// Returns two sums over all trees, J: the kinetic energy less the work, which changes only by the error
+    /// of the integrator, and the kinetic energy plus the magnitude of the work. Requires the kinematics of
+    /// `state` relative to W in the trees.
     pub(super) fn energy_balance(&self, state: &State<S>) -> [S; 2] {
         let (mut balance, mut scale) = (S::of(0.0), S::of(0.0));
         for (tree, state) in self.trees.iter().zip(&state.trees) {

@@ -8,7 +8,7 @@ use crate::earth::EarthError;
 use crate::environment::EnvironmentError;
 use crate::gravity::GravityError;
 use crate::model::ModelError;
-use crate::number_text::{count, indices, short, unlike};
+use crate::number_text::{choice, count, exact, short, unlike};
 use crate::orbit::OrbitError;
 use crate::reference::ReferenceError;
 use crate::world::WorldError;
@@ -33,39 +33,41 @@ pub enum SimulationError {
     )]
     OpenMimic { joint: String, by: String, is_moving: bool },
     #[error(
-        "the loops cannot all be closed near the initial configuration: {loops}; check the poses and lengths of these \
-         loops, or start closer to a configuration that closes them"
+        "no configuration near the initial one satisfies all constraints of loops and mimic joints: \
+         {faults}; check {check}, or start closer to a configuration that satisfies them"
     )]
-    CannotClose { loops: String },
+    CannotClose { faults: String, check: String },
     #[error("the array '{name}' has {got}; expected {expected} for this robot", got = count(*got, "number"))]
     WrongLength { name: &'static str, expected: usize, got: usize },
     #[error("system '{system}': {source}")]
     OfSystem { system: String, source: Box<SimulationError> },
+    #[error("t is {t} s; it must be finite")]
+    TimeNotFinite { t: f64 },
     #[error("{name}[{index}] is {value}; it must be finite", value = short(*value))]
     NotFinite { name: &'static str, index: usize, value: f64 },
-    #[error("{name} is {value} s; it must be positive and finite", value = short(*value))]
+    #[error("{name} is {value} s; it must be positive and finite", value = exact(*value))]
     NotPositive { name: &'static str, value: f64 },
     #[error(
         "the quaternion q[3:7] (x, y, z, w) has norm {norm}; it must be 1 within 1e-6; normalise it",
         norm = unlike(*norm, &[1.0])
     )]
     QuaternionNorm { norm: f64 },
-    #[error("time_step is {value} s; it must be between 1e-12 and 1e9 s", value = short(*value))]
+    #[error("time_step is {value} s; it must be between 1e-12 and 1e9 s", value = exact(*value))]
     TimeStep { value: f64 },
     #[error(
-        "{name}[{index}], {what}, is {value} {unit}; it must lie between -{limit} and {limit} {unit}{reason}",
-        value = short(*value), limit = short(*limit),
+        "{name}[{index}], {what}, is {value} {unit}; its magnitude must be below {limit} {unit}{reason}",
+        value = exact(*value), limit = exact(*limit),
         reason = if *unit == "m/s" { ", the speed of light" } else { "" }
     )]
     OutOfRange { name: &'static str, index: usize, what: String, value: f64, unit: &'static str, limit: f64 },
-    #[error("tolerance is {value}; it must be between 1e-13 and 0.1", value = short(*value))]
+    #[error("tolerance is {value}; it must be between 1e-13 and 0.1", value = exact(*value))]
     Tolerance { value: f64 },
     #[error(
         "rereference_beyond is {value} m; it must be at least 1 m, or infinity to keep the reference orbit",
-        value = short(*value)
+        value = exact(*value)
     )]
     RereferenceBeyond { value: f64 },
-    #[error("restitution is {value}; it must be between 0 and 1", value = short(*value))]
+    #[error("restitution is {value}; it must be between 0 and 1", value = exact(*value))]
     Restitution { value: f64 },
     #[error(
         "joint '{joint}' starts at {value} {unit}; start it within its limits, {lower} to {upper} {unit}, or \
@@ -74,8 +76,8 @@ pub enum SimulationError {
     )]
     OutsideLimits { joint: String, value: f64, unit: &'static str, lower: f64, upper: f64 },
     #[error(
-        "at t = {time} s, the error of a step exceeds the tolerance even with a step of {step} s; increase tolerance, \
-         or reduce gains or the stiffness of effects",
+        "at t = {time} s, the error of a step exceeds the tolerance even with a step of {step} s; increase \
+         the tolerance, or reduce gains or the stiffness of effects",
         time = short(*time), step = short(*step)
     )]
     StepTooSmall { time: f64, step: f64 },
@@ -89,16 +91,20 @@ pub enum SimulationError {
     Earth(#[from] EarthError),
     #[error("record_every is 0; it must be at least 1 step")]
     RecordEvery,
-    #[error("{effect} requires an orbit around a planet; set orbit, or mu of a custom path")]
+    #[error(
+        "{effect} requires an orbit around a planet; set orbit, or give the path of the run its planet's \
+         mu (m³/s²)"
+    )]
     NeedsOrbit { effect: String },
     #[error(
-        "{effect} is given twice for body '{body}' and would count twice; remove one of the two, or assign one to other \
-         bodies"
+        "the effect '{effect}' is given twice for body '{body}', so its force would count twice{orbit}; \
+         remove one of the two, or assign one to other bodies",
+        orbit = if effect == "gravity" { " (an orbit around a planet adds its gravity)" } else { "" }
     )]
     EffectTwice { effect: String, body: String },
     #[error(
-        "the {effect} acts on none of the systems of the run; assign it to one of them ({known})",
-        known = indices(*count, "system")
+        "the effect '{effect}' acts on none of the systems of the run, which has {known}",
+        known = choice(*count, "system")
     )]
     EffectOnNoSystem { effect: String, count: usize },
     #[error(
@@ -111,15 +117,15 @@ pub enum SimulationError {
     )]
     NeedsTool,
     #[error(
-        "frame {frame} does not exist; the robot has {known}; give one of these indices",
-        known = indices(*count, "frame")
+        "frame {frame} does not exist; the robot has {known}",
+        known = choice(*count, "frame")
     )]
     UnknownFrame { frame: usize, count: usize },
     #[error(
         "the reference of frame '{frame}' starts {position} m and {angle} rad from the frame; it must start within \
          {tolerance_m} m and {tolerance_rad} rad; start it at the pose of the frame, or increase \
          reference_start_tolerance",
-        position = unlike(without_noise(*position), &[tolerance[0]]), angle = unlike(without_noise(*angle), &[tolerance[1]]),
+        position = offset_text(*position, tolerance[0]), angle = offset_text(*angle, tolerance[1]),
         tolerance_m = short(tolerance[0]), tolerance_rad = short(tolerance[1])
     )]
     ReferenceStartsAway { frame: String, position: f64, angle: f64, tolerance: [f64; 2] },
@@ -133,13 +139,13 @@ pub enum SimulationError {
     #[error("{rows} recorded rows do not fit in memory; increase record_every to record fewer rows")]
     TooManyRows { rows: usize },
     #[error(
-        "the run diverged at t = {time} s: the state of {systems} is not finite; reduce time_step, initial rates, gains or \
-         joint damping (the attributes q and v of the error hold the last finite state)",
+        "the run diverged at t = {time} s: the state or a torque of {systems} is not finite; reduce time_step, initial \
+         rates, gains or joint damping (the attributes q and v of the error hold the last finite state)",
         time = short(*time)
     )]
     Diverged { time: f64, systems: String, q: Vec<f64>, v: Vec<f64> },
     #[error(
-        "t is {t} s, which is before the current time, {time} s; give a later time",
+        "t is {t} s, which is before the current time, {time} s; give this time or a later one",
         t = unlike(*t, &[*time]), time = short(*time)
     )]
     PastTime { t: f64, time: f64 },
@@ -187,7 +193,7 @@ pub enum SimulationError {
     Model(#[from] ModelError),
     #[error("an external engine does not support {what} ('{name}'); {remedy}, or use the native engine")]
     EngineOfWorld {
-        /// Name of the event, system, contact, loop or brake.
+        /// Name of the event, system, contact, loop, mimic joint or brake.
         name: String,
         /// Setting that only the native engine supports.
         what: &'static str,
@@ -243,7 +249,8 @@ impl std::fmt::Debug for RunFailure {
     }
 }
 
-/// Returns an offset rounded to 1e-9 m or rad, which is far below any useful tolerance.
-fn without_noise(offset: f64) -> f64 {
-    (offset * 1e9).round() / 1e9
+/// Formats an offset without the digits below 1e-9 m or rad, unless only these digits exceed the tolerance.
+fn offset_text(offset: f64, tolerance: f64) -> String {
+    let rounded = (offset * 1e9).round() / 1e9;
+    if (rounded > tolerance) == (offset > tolerance) { unlike(rounded, &[tolerance]) } else { exact(offset) }
 }

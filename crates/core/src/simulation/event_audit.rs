@@ -14,7 +14,7 @@ pub(super) struct Snapshot {
     pub(super) v: Vec<f64>,
 }
 
-/// Event of a capture, release or brake that has been applied to the current state.
+/// Capture, release or change of a brake that has been applied to the current state.
 pub(super) struct Applied<'s> {
     /// Index of the event among those of the group.
     pub(super) number: usize,

@@ -6,7 +6,7 @@ use super::schedule::Schedule;
 use crate::world::{Event, FrameIndex, When, WorldError};
 use serde::{Deserialize, Serialize};
 
-/// Progress of one event.
+/// State of one event during a run: whether it has happened, and when it is due.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct EventState {
     /// Time at which the event happened, s; `None` until then. A release of frames that are not connected has
@@ -28,14 +28,14 @@ pub(super) struct Attached {
     pub(super) capture: usize,
 }
 
-/// Events of a group of systems, with the progress of each.
+/// Events of a group of systems, with the state of each.
 #[derive(Debug, Default)]
 pub(super) struct Events {
     pub(super) list: Vec<Event>,
     /// Index of each event among all events of the world.
     pub(super) numbers: Vec<usize>,
     pub(super) states: Vec<EventState>,
-    /// Records of the captures, releases, brakes, touch-downs and lift-offs that have happened.
+    /// Records of the captures, releases, changes of brakes, touch-downs and lift-offs that have happened.
     pub(super) records: Vec<EventRecord>,
     /// Controls that follow a frame to which their own frame has been rigidly connected.
     pub(super) attached: Vec<Attached>,
@@ -91,7 +91,9 @@ impl Events {
     pub(super) fn check_trigger(&self, number: usize) -> Result<(), SimulationError> {
         let (event, state) = (&self.list[number], &self.states[number]);
         let reason = match event.when {
-            _ if state.happened.is_some() => "it has already happened; an event happens once",
+            _ if state.happened.is_some() => {
+                "it has already happened and happens only once; declare another event"
+            }
             When::OnCommand => return Ok(()),
             _ => "it does not happen on command; declare it with on_command",
         };

@@ -1,4 +1,5 @@
-//! Checks of the certificate for one tree, evaluated at every step of a run that does not record every step.
+//! Checks of the certificate for one tree, evaluated at every step of a run whose rows are not sufficient for
+//! them.
 
 use super::certificate::{BaseMotion, MassMotion, PairChecks, Stream, Sums};
 use super::environment_loads::EnvironmentLoads;

@@ -1,4 +1,5 @@
-//! Latches: captures that happen once two frames are close to each other and slow relative to each other.
+//! Latches: captures that happen once two frames are close to each other and their relative velocity is
+//! small.
 
 use super::tree::Tree;
 use super::tree_state::TreeState;

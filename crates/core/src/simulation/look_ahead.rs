@@ -50,8 +50,9 @@ impl<S: Scalar> RunState<'_, S> {
     }
 
     /// Returns true if the step in `interval` ends at or before `t`, s, although `interval` ends later. This
-    /// happens if the mode of a joint, latch or contact changes or the tolerance requires a shorter step. The
-    /// function computes the step as a trial, without rows, and undoes it.
+    /// happens if the mode of a joint, latch or contact changes, while bodies touch or approach each other,
+    /// and if the tolerance requires a shorter step. The function computes the step as a trial, without rows,
+    /// and undoes it.
     fn step_ends_by(&mut self, t: f64, interval: &Interval, after: Cursor) -> Result<bool, SimulationError> {
         if !self.mover.may_end_early(&self.equations) {
             return Ok(false);

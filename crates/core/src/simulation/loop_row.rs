@@ -1,6 +1,6 @@
-//! Values of one closed loop in a row of a trace.
+//! Force, moment, point and opening of one closed loop in a row of a trace.
 
-/// Values of one closed loop at the time of a row of the trace.
+/// Force, moment, point and opening of one closed loop at the time of a row of the trace.
 pub(super) struct LoopRow {
     /// Index of the tree.
     pub(super) tree: usize,

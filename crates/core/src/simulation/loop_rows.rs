@@ -12,8 +12,8 @@ use crate::spatial::{Real, Scalar, Vec3};
 use crate::world::{Action, Event};
 
 impl<S: Real> Tree<'_, S> {
-    /// Adds the values of every closed loop at `state` to `rows`; `tree` is the index of this tree. Requires
-    /// the kinematics of `state`, the loads and the modes of the joints.
+    /// Adds the force, moment, point and opening of every closed loop at `state` to `rows`; `tree` is the
+    /// index of this tree. Requires the kinematics of `state`, the loads and the modes of the joints.
     fn add_loop_rows(&mut self, tree: usize, state: &TreeState<S>, rows: &mut Vec<LoopRow>) {
         if self.loops.is_empty() {
             return;

@@ -76,7 +76,8 @@ impl<'a, S: Scalar> RunState<'a, S> {
         Ok(old.impulses)
     }
 
-    /// Allocates all buffers whose dimensions depend on the trees.
+    /// Allocates all buffers whose dimensions depend on the trees, and updates the contacts, the latches and
+    /// the trees that controllers know.
     fn resize(&mut self) -> Result<(), SimulationError> {
         if let Mover::Native(method) = &mut self.mover {
             let control = method.integration.control().cloned();

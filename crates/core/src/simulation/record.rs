@@ -56,8 +56,9 @@ impl<S: Scalar> RunState<'_, S> {
     }
 
     /// Applies the impacts between bodies with an impact law, and those of joints that move into their stops,
-    /// at `t`, s, the start of a step over `interval`, s. If every step is recorded, adds one row before and
-    /// one row after the impacts, at the same time.
+    /// at `t`, s, the start of a step over `interval`, s. If every step is recorded, adds a row before the
+    /// impacts; the row at the start of the step, which follows at the same time, contains the state after
+    /// them.
     pub(super) fn impacts(&mut self, t: f64, interval: (f64, f64)) -> Result<(), SimulationError> {
         let Touched { has_impact, is_new } = self.equations.touched(t, &self.state)?;
         let mut pairs = self.equations.trees.iter().zip(&self.state.trees);
@@ -154,8 +155,8 @@ impl<S: Scalar> RunState<'_, S> {
     }
 }
 
-/// Adds the accelerations to the rows at the start of the last step. If systems share trees, `row_states` are
-/// the states of the trees in these rows.
+/// Adds the accelerations, and the contact forces that an external engine computes, to the rows at the start
+/// of the last step. If systems share trees, `row_states` are the states of the trees in these rows.
 pub(super) fn complete_rows<S: Scalar>(
     systems: &mut [RunSystem<'_, S>],
     mover: &Mover<'_, S>,

@@ -25,7 +25,7 @@ use std::hint::black_box;
 pub(super) struct RecordOptions {
     /// Index of the frame of the tool; `None` without a tool.
     pub(super) tool: Option<usize>,
-    /// True if the tool has a reference.
+    /// True if the tool or a control of the tool has a reference.
     pub(super) has_reference: bool,
     /// Names of the effects whose wrenches are recorded.
     pub(super) effects: Vec<String>,
@@ -35,7 +35,8 @@ pub(super) struct RecordOptions {
     pub(super) loops: Vec<String>,
     /// True if the run has an orbit.
     pub(super) has_orbit: bool,
-    /// True if a controller compensates Coulomb friction.
+    /// True if a controller compensates Coulomb friction, a joint has such friction, and the native engine is
+    /// used.
     pub(super) compensates_friction: bool,
     /// True if the run records the difference between gravity and the acceleration of the reference orbit,
     /// which `Carried` mode omits from the motion.
@@ -60,7 +61,7 @@ impl RecordOptions {
     }
 }
 
-/// Recorder that adds rows to a trace without allocating memory.
+/// Recorder that adds rows to a trace, for which it reserves memory in advance.
 pub(super) struct Recorder {
     pub(super) trace: Trace,
     /// Index of the system in the group.
@@ -70,8 +71,26 @@ pub(super) struct Recorder {
     shift: Option<Shift>,
     /// Number of values per row of each column.
     widths: Vec<usize>,
-    /// Number of rows that [`Recorder::drop_rows`] has removed.
+    /// Number of rows that [`Recorder::drop_rows`] and [`Recorder::drop_checked_rows`] have removed,
+    /// including rows that were checked and removed before the checkpoint from which the run was resumed.
     dropped: usize,
+}
+
+/// Returns a text that describes how the names `got` of the columns of a checkpoint differ from those of this
+/// simulation.
+fn difference_of_columns(got: &[String], expected: &[String]) -> String {
+    let missing_in = |names: &[String], others: &[String]| {
+        let quoted = names.iter().filter(|name| !others.contains(name)).map(|name| format!("'{name}'"));
+        quoted.collect::<Vec<_>>().join(", ")
+    };
+    match (missing_in(got, expected).as_str(), missing_in(expected, got).as_str()) {
+        ("", "") => "its columns are in another order than those of this simulation".to_owned(),
+        (extra, "") => format!("it has the columns {extra}, which this simulation does not have"),
+        ("", lacks) => format!("it lacks the columns {lacks} of this simulation"),
+        (extra, lacks) => {
+            format!("it has the columns {extra}, where this simulation has the columns {lacks}")
+        }
+    }
 }
 
 /// Returns an empty vector with memory for `rows` rows of `width` numbers.
@@ -122,20 +141,17 @@ impl Recorder {
         let names = |trace: &Trace| trace.columns().map(|(name, _)| name.into_owned()).collect::<Vec<_>>();
         let (expected, got) = (names(&self.trace), names(&rows));
         if expected != got {
-            return Err(CheckpointError::OtherSize {
-                name: "columns",
-                got: got.len(),
-                expected: expected.len(),
-            });
+            return Err(CheckpointError::OtherColumns { difference: difference_of_columns(&got, &expected) });
         }
         for (((name, from), (_, to)), width) in
             rows.columns_mut().zip(self.trace.columns_mut()).zip(&self.widths)
         {
             if from.len() != count * width {
-                let name =
-                    if let Cow::Borrowed(name) = name { name } else { "rows of a control or an effect" };
                 let (got, expected) = (from.len(), count * width);
-                return Err(CheckpointError::OtherSize { name, got, expected });
+                return Err(match name {
+                    Cow::Borrowed(name) => CheckpointError::OtherSize { name, got, expected },
+                    Cow::Owned(name) => CheckpointError::ColumnLength { name, got, expected },
+                });
             }
             to.append(from);
         }
@@ -295,8 +311,8 @@ impl Recorder {
         self.truncate(self.trace.rows().saturating_sub(1));
     }
 
-    /// Removes all rows except the first one and the last `keep`, after adding them to the checks of the
-    /// certificate; see [`drop_checked_rows`](super::drop_checked_rows).
+    /// Removes all rows except the first one and the last `keep` (at least 16), after adding them to the
+    /// checks of the certificate; see [`drop_checked_rows`](super::drop_checked_rows).
     pub(super) fn drop_checked_rows(&mut self, keep: usize, model: &Model) {
         self.dropped += remove_checked(&mut self.trace, keep, model, &self.widths);
     }

@@ -6,7 +6,7 @@ use super::trace::Trace;
 use crate::dynamics::Momentum;
 use serde::{Deserialize, Serialize};
 
-/// Result of a run.
+/// Result of a run: traces of the systems, records of the events, and balances of groups of systems.
 #[derive(Clone, Debug, Default)]
 pub struct Recording {
     /// Trace of each system, in the order of the systems.
@@ -34,7 +34,7 @@ impl Recording {
     }
 }
 
-/// Kind of an event.
+/// Kind of an event: which change of a connection, a contact or a brake happened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum EventKind {
     /// Frames of two systems were connected.
@@ -74,7 +74,7 @@ impl EventKind {
     }
 }
 
-/// Event that happened, with its audit.
+/// Record of an event that happened, with the errors of its momentum and energy balances.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EventRecord {
     /// Name of the event, or of the contact.
@@ -110,8 +110,9 @@ pub struct EventRecord {
     /// with the work of the spring, and for a brake with the energy that its impulse dissipates. Zero while a
     /// seating motion prescribes the motion of joints.
     pub energy_error: f64,
-    /// Largest normal force since the touch-down, N; `None` unless the event is a lift-off. It is the largest
-    /// value at the end of a step, or the maximum of the parabola through three such values.
+    /// For a lift-off of a contact without an impact law, the largest normal force since the touch-down, N;
+    /// otherwise `None`. It is the largest value at the end of a step, or the maximum of the parabola through
+    /// three such values.
     #[serde(default)]
     pub peak_force: Option<f64>,
 }
@@ -120,9 +121,9 @@ pub struct EventRecord {
 pub const AUDIT: f64 = 1e-11;
 
 impl EventRecord {
-    /// Returns the checks of the audit. The checks of relative velocities apply only to captures. Touch-downs
-    /// and lift-offs have no checks, because the balances of the group contain their momentum and energy at
-    /// every row.
+    /// Returns the checks of the momentum and energy balances and, for a capture, of the relative velocities
+    /// that remain after it. Touch-downs and lift-offs have no checks, because the balances of the group
+    /// contain their momentum and energy at every row.
     pub fn checks(&self) -> Vec<Check> {
         if self.kind.is_of_contact() {
             return Vec::new();
@@ -140,7 +141,7 @@ impl EventRecord {
         lines.map(|(name, value)| Check { name, value, gate: AUDIT }).collect()
     }
 
-    /// Returns true if every check of the audit passes.
+    /// Returns true if every check of [`EventRecord::checks`] passes.
     pub fn passed(&self) -> bool {
         self.checks().iter().all(Check::passed)
     }

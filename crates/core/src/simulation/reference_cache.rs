@@ -16,7 +16,8 @@ pub(super) struct ReferenceCache {
     instants: [Box<Instant>; 5],
 }
 
-/// State of the reference orbit and positions of the Sun and the Moon at one instant.
+/// State of the reference orbit at one instant, and cached quantities that depend on the instant and this
+/// state, such as the position of the Sun.
 #[derive(Clone, Debug)]
 pub(super) struct Instant {
     time: f64,

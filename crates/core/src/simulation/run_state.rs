@@ -3,7 +3,7 @@
 
 use super::accuracy::Accuracy;
 use super::checkpoint::{
-    GroupCheckpoint, Progress, SavedControllers, SystemProgress, TreeProgress, WorldProgress,
+    GroupCheckpoint, Progress, SavedControllers, SystemProgress, TreeProgress, WorldProgress, check_each,
 };
 use super::checkpoint_error::CheckpointError;
 use super::connections::Connections;
@@ -46,8 +46,8 @@ pub(super) struct RunState<'a, S> {
     pub(super) systems: Vec<RunSystem<'a, S>>,
     pub(super) connections: Connections,
     /// Frames that are fixed in one system and in which references of another system are given. The first
-    /// entry of a pair identifies the frame by the index of its system in the group; the second is the frame
-    /// as the reference holds it, to which the simulation writes the motion of the frame.
+    /// entry of a pair identifies the frame by the index of its system in the group. The second entry shares
+    /// its data with the reference; the simulation writes the motion of the frame to it.
     pub(super) moving_frames: Vec<(FrameIndex, MovingFrame)>,
     pub(super) events: Events,
     pub(super) ledger: Ledger,
@@ -79,7 +79,8 @@ pub(super) struct RunState<'a, S> {
     pub(super) row_states: Vec<TreeState<S>>,
     /// Buffer for the values of the closed loops in a row.
     pub(super) loop_rows: Vec<LoopRow>,
-    /// Distance of the base from the origin of W beyond which a system changes to a local reference orbit, m.
+    /// Distance of the base from the origin of W beyond which a system changes to a local reference orbit, m;
+    /// infinity if the reference orbit is kept.
     pub(super) rereference_beyond: f64,
     pub(super) earth: Option<Arc<Earth>>,
     /// Closed loops and mimic joints that have been in a singular configuration since the run was started or
@@ -240,10 +241,12 @@ impl<S: Scalar> RunState<'_, S> {
     fn check_estimates(&self, progress: &Progress) -> Result<(), CheckpointError> {
         for (number, saved) in progress.trees.iter().enumerate() {
             let (errors, checks) = self.accuracy.save(number);
-            if errors.is_some() != saved.errors.is_some() || checks.is_some() != saved.checks.is_some() {
-                let (name, expected) = ("sets of error estimates", usize::from(errors.is_some()));
-                return Err(CheckpointError::OtherSize { name, got: 1 - expected, expected });
-            }
+            let [own_errors, own_checks] = [errors.is_some(), checks.is_some()].map(usize::from);
+            let [got_errors, got_checks] = [saved.errors.is_some(), saved.checks.is_some()].map(usize::from);
+            check_each([
+                ("sets of error estimates", got_errors, own_errors),
+                ("sets of checks at every step", got_checks, own_checks),
+            ])?;
         }
         Ok(())
     }

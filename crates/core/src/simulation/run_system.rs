@@ -18,19 +18,19 @@ use crate::world::{Brake, Member};
 pub(super) struct RunSystem<'a, S> {
     pub(super) controllers: Controllers<'a, S>,
     pub(super) recorder: Recorder,
-    /// Torques, `(n,)`, N m or N, and requested accelerations, `(n,)`, rad/s² or m/s², before a trial step
-    /// updated the controllers at the cut of that step.
+    /// Torques, `(n,)`, N m or N, and requested accelerations, `(n,)`, rad/s² or m/s², that were held before
+    /// the last trial step that updated the controllers; `None` if no trial step has updated them.
     pub(super) held: Option<(Vec<S>, Vec<Option<f64>>)>,
-    /// True if an update of the controllers is due at the current cut.
+    /// True if an update of the controllers is due at the start of the current step.
     pub(super) is_due: bool,
     /// Indices in the group of the systems whose models the controllers know.
     pub(super) knows: Vec<usize>,
-    /// Places of the systems in the tree whose model the controllers use; empty if none of the known systems
-    /// is connected.
+    /// Places of the systems in the tree whose model the controllers use. Empty until a known system is
+    /// connected for the first time; ignored while none is connected.
     pub(super) known_members: Vec<Member>,
     /// Error estimates of the previous trees that contained the system; `None` if its tree has never changed.
     pub(super) settled: Option<Estimates>,
-    /// Brakes of the system, whose fields `is_engaged` have the current state.
+    /// Brakes of the system; their fields `is_engaged` are kept up to date.
     pub(super) brakes: Vec<Brake>,
 }
 

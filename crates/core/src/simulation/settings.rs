@@ -30,7 +30,7 @@ pub struct Simulation {
     /// Gravity field of the run. `None` selects the field of the orbit or, if the orbit has none, that of a
     /// point mass.
     pub gravity: Option<Arc<Gravity>>,
-    /// Orientation of the Earth, which some effects require; `None` if no effect requires it.
+    /// Rotation and epoch of the Earth, which some effects require; `None` if they are not known.
     pub earth: Option<Arc<Earth>>,
     /// Determines whether the systems fall freely and thus drift away from a reference orbit that is not in
     /// free fall (`True`), or move along with that orbit (`Carried`).

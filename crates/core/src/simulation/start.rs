@@ -39,16 +39,19 @@ impl Simulation {
     ///
     /// # Errors
     /// The errors of [`Simulation::check`], [`SimulationError::NotPositive`] for a duration that is not
-    /// positive and finite, and [`SimulationError::Earth`] if the orientation data of the Earth do not cover
-    /// the run.
+    /// positive and finite, [`SimulationError::Earth`] if the orientation data of the Earth do not cover the
+    /// run, [`SimulationError::Control`] for controls that the models or the loads do not permit,
+    /// [`SimulationError::TooManyRows`] if the rows do not fit in memory, and [`SimulationError::Contacts`]
+    /// for bodies that overlap at the start although their contact does not permit it.
     pub fn start(&mut self, duration: Option<f64>) -> Result<Stepper<'_>, SimulationError> {
         self.start_from(duration, None, usize::MAX)
     }
 
-    /// Starts a run, or resumes that of the checkpoint and the rows `from`, whose caller removes rows with
-    /// [`Stepper::drop_checked_rows`]. Memory is reserved for few rows only. The rows in `from` may already
-    /// be shortened by [`drop_checked_rows`](super::drop_checked_rows). `duration` is the planned end of the
-    /// run, s, as in [`Simulation::start`] and [`Simulation::resume`].
+    /// Starts or resumes a run from which the caller regularly removes rows with
+    /// [`Stepper::drop_checked_rows`], so that memory is reserved for at most 1024 rows. `from` contains the
+    /// checkpoint from which the run is resumed and the rows of each system, from which
+    /// [`drop_checked_rows`](super::drop_checked_rows) may already have removed rows; `None` starts a run.
+    /// `duration` is the planned end of the run, s, as in [`Simulation::start`] and [`Simulation::resume`].
     ///
     /// # Errors
     /// The errors of [`Simulation::start`] and [`Simulation::resume`].

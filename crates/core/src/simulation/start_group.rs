@@ -25,7 +25,7 @@ use super::state::State;
 use super::tree::Tree;
 use super::wrench_commands::WRENCH_COMMAND;
 use crate::contact::{Contact, ContactSteps};
-use crate::control::{Control, ControlError};
+use crate::control::Control;
 use crate::earth::Earth;
 use crate::environment::{Effect, GravityMode};
 use crate::gravity::Gravity;
@@ -37,7 +37,8 @@ use crate::world::{Action, Event, FrameIndex, Layout, System, When, systems_of};
 use std::borrow::Cow;
 use std::sync::Arc;
 
-/// Number of rows for which a run without a planned end reserves memory.
+/// Number of rows for which memory is reserved in a run without a planned end, and at most in a run from
+/// which the caller removes rows.
 pub(super) const ROWS_OF_OPEN_RUN: usize = 1024;
 
 /// Settings that all systems of a simulation have in common.
@@ -167,9 +168,10 @@ impl Shared {
         Ok(run)
     }
 
-    /// Returns the model of the system with index `number` in the group, and creates its tree, controllers
-    /// and recorder. `numbers` are the indices in the world of the systems of the group. The recorder
-    /// reserves memory for `rows` rows.
+    /// Creates the tree, the controllers and the recorder of the system with index `number` in the group, and
+    /// returns them with the model of the system. `numbers` are the indices in the world of the systems of
+    /// the group. The recorder reserves memory for `rows` rows; `rows_suffice` is true if these rows are
+    /// sufficient for the checks that compare successive steps.
     fn run_system<'a, S: Scalar>(
         &self,
         (number, numbers): (usize, &[usize]),
@@ -179,11 +181,6 @@ impl Shared {
         let System { model, controls, tool, reference, stops, knows, brakes, .. } = system;
         let model: &'a Model = model;
         let stops = stops.filter(|_| !self.has_engine); // an external engine has its own stops
-        if let Some(control) =
-            controls.iter().find(|control| control.load.is_some_and(|load| !knows.contains(&load.system)))
-        {
-            return Err(ControlError::UnknownLoad { control: control.name.clone() }.into());
-        }
         let knows: Vec<usize> = knows.iter().filter_map(|&system| local(numbers, system)).collect();
         let mut options = self.record_options(model, controls, *tool, reference.is_some());
         let own = self.contacts.iter().filter(|contact| contact.first_system() == Some(number));
@@ -344,7 +341,7 @@ fn lift<S: Scalar>(x: &[f64]) -> Vec<S> {
     x.iter().map(|x| S::of(*x)).collect()
 }
 
-/// Returns the frames of systems of the group in which references of the group are given, see
+/// Returns the frames of systems of the group in which references of the group are given; see
 /// [`RunState::moving_frames`].
 fn moving_frames_of(numbers: &[usize], systems: &[&mut System]) -> Vec<(FrameIndex, MovingFrame)> {
     let moving = systems.iter().flat_map(|system| system.moving_frames());

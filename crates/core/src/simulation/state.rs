@@ -13,8 +13,9 @@ pub(crate) struct State<S> {
     /// Time integral of the moments of the external forces about the common centre of mass of all trees, with
     /// each force acting at the centre of mass of its tree, W axes, N m s; zero for a single tree.
     pub(crate) orbital: Vec3<S>,
-    /// Integrals of the pairs of pieces that are not far apart, in ascending order of the indices of the
-    /// pairs; of all pairs at the start of a run and in checkpoints. Empty without contacts.
+    /// Integrated quantities of the pairs of shapes that are near each other, in ascending order of the
+    /// indices of the pairs. At the start of a run and in checkpoints, the list contains all pairs. Empty
+    /// without contacts.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) contacts: Vec<ContactState>,
 }
@@ -48,13 +49,13 @@ impl<S: Real> State<S> {
         self.trees.iter_mut().filter_map(|tree| tree.clock.as_mut()).for_each(|clock| *clock = S::of(t));
     }
 
-    /// Returns the state with `f` applied to every number.
+    /// Returns the state with `f` applied to every number except those of the contacts, which are copied.
     pub(crate) fn map<T>(&self, f: impl Fn(&S) -> T) -> State<T> {
         let trees = self.trees.iter().map(|tree| tree.map(&f)).collect();
         State { trees, orbital: self.orbital.map(&f), contacts: self.contacts.clone() }
     }
 
-    /// Copies `from` without allocating.
+    /// Copies `from` into the existing buffers, of which only that of the contacts may grow.
     pub(crate) fn copy_from(&mut self, from: &Self) {
         for (to, from) in self.trees.iter_mut().zip(&from.trees) {
             to.copy_from(from);
@@ -82,7 +83,8 @@ impl<S: Real> State<S> {
 }
 
 impl<S: Real> Rate<S> {
-    /// Creates zero rates with the dimensions of `state`.
+    /// Creates rates with the dimensions of `state`. Those of the trees are zero, except that clocks have the
+    /// rate 1; those of the contacts are placeholders.
     pub(crate) fn of(state: &State<S>) -> Self {
         Self {
             trees: state.trees.iter().map(TreeRate::of).collect(),
@@ -106,7 +108,7 @@ impl<S: Real> Rate<S> {
         }
     }
 
-    /// Copies `from` without allocating.
+    /// Copies `from` into the existing buffers, of which only that of the contacts may grow.
     pub(crate) fn copy_from(&mut self, from: &Self) {
         for (to, from) in self.trees.iter_mut().zip(&from.trees) {
             to.copy_from(from);
@@ -115,7 +117,7 @@ impl<S: Real> Rate<S> {
         self.contacts.clone_from(&from.contacts);
     }
 
-    /// Sets the rates that [`Rate::accumulate`] sums to zero.
+    /// Resets the rates to which [`Rate::accumulate`] adds: zero for the trees, and none for the contacts.
     #[inline(always)]
     pub(crate) fn clear(&mut self) {
         self.trees.iter_mut().for_each(TreeRate::clear);

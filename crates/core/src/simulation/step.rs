@@ -12,8 +12,9 @@ use crate::spatial::{Scalar, Vec3};
 
 impl<S: Scalar> RunState<'_, S> {
     /// Computes a step that starts at the current cut, which is the start of `interval`. The step ends at
-    /// `end`, s, or earlier: at an event that became known during the run, at the first change of the mode of
-    /// a joint, latch or contact, while bodies touch, or if the tolerance requires a shorter step.
+    /// `end`, s, unless an event that became known during the run, or a change of the mode of a joint, latch
+    /// or contact, ends it earlier. It may also be shorter while bodies touch or approach each other, and if
+    /// the tolerance of an adaptive integrator requires a shorter step.
     pub(super) fn step_to(&mut self, end: f64, interval: &Interval) -> Result<(), SimulationError> {
         let start = interval.start;
         self.order_of_execution(end, interval).map_err(|error| self.name_divergence(error, start))?;

@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 const EVERY: usize = 256;
 /// Smallest number of probes of a run, unless the run has fewer steps.
 const LEAST: usize = 5;
-/// Indices of additional steps that are probed early in a long run, where transients occur.
+/// Indices of additional steps that are probed early in a long run, when transients occur.
 const EARLY: [usize; 3] = [4, 16, 64];
 /// Largest difference of two values that is treated as a rounding error, in units of the machine epsilon
 /// times their magnitude.

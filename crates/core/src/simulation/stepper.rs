@@ -10,7 +10,8 @@ use std::ops::ControlFlow;
 /// Run that the caller advances; see [`Simulation::start`](super::Simulation::start).
 ///
 /// The steps are those of [`Simulation::run`](super::Simulation::run), independent of the times to which the
-/// run is advanced. Only torque commands, wrench commands and triggered events end a step early.
+/// run is advanced. Among the actions of the caller, only torque commands, wrench commands and triggered
+/// events end a step early.
 pub struct Stepper<'a> {
     pub(super) groups: Vec<Group<'a>>,
     /// Index of the group of each system, and index of the system in the group.
@@ -158,8 +159,9 @@ impl<'a> Stepper<'a> {
         self.ended_by(result)
     }
 
-    /// Returns a checkpoint from which the run can be resumed, together with the rows of each system
-    /// ([`Stepper::rows`]).
+    /// Returns a checkpoint of the run. To resume the run,
+    /// [`Simulation::resume`](super::Simulation::resume) requires this checkpoint and the rows of each
+    /// system, which [`Stepper::rows`] returns.
     ///
     /// # Errors
     /// The error of a user-defined controller whose state cannot be saved, and [`SimulationError::Ended`] if
@@ -180,8 +182,8 @@ impl<'a> Stepper<'a> {
     /// Removes the recorded rows of each system except the first one and the last `keep`, which limits the
     /// memory of a long run. The motion does not change.
     ///
-    /// The run cannot be resumed from a later checkpoint, since rows are missing. If every step is recorded,
-    /// the checks of the certificate that compare successive steps are then omitted.
+    /// The run cannot be resumed from a later checkpoint, since rows are missing. The checks of the
+    /// certificate that compare successive steps are then omitted, unless they are evaluated during the run.
     pub fn drop_rows(&mut self, keep: usize) {
         self.groups.iter_mut().for_each(|group| group.run.drop_rows(keep, false));
     }

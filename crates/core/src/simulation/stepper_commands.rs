@@ -11,9 +11,9 @@ use crate::control::{Control, External, ExternalCommand, Interface};
 use crate::spatial::Scalar;
 
 impl Stepper<'_> {
-    /// Sends a command to the control named `control` of the system with index `system`, whose law is
-    /// [`External`](crate::control::External). The command takes effect at the next control tick, or at the
-    /// current time if that is a tick, and is held until the next command.
+    /// Sends a command to the control named `control` of the system with index `system`. The law of this
+    /// control must be [`External`](crate::control::External). The command takes effect at the next control
+    /// tick, or at the current time if that is a tick, and is held until the next command.
     ///
     /// # Errors
     /// [`SimulationError::Control`] for an invalid command, and for a control that does not exist, does not

@@ -1,10 +1,11 @@
-//! Events of a run, as seen by the caller of a stepper.
+//! Events, rigidly connected controls and singular loops of a run, which the caller of a stepper can query.
 
 use super::attached::AttachedControl;
 use super::error::SimulationError;
 use super::recording::EventRecord;
 use super::singularity_watch::SingularLoop;
 use super::stepper::Stepper;
+use crate::number_text::names;
 use crate::world::WorldError;
 
 impl Stepper<'_> {
@@ -25,10 +26,7 @@ impl Stepper<'_> {
             }
         }
         let known: Vec<String> = self.groups.iter().flat_map(|group| group.run.events()).collect();
-        let known = match known.len() {
-            0 => "it has no events".to_owned(),
-            _ => format!("its events are: {}", known.join(", ")),
-        };
+        let known = names(&known, "event");
         Err(WorldError::NoSuchEvent { name: name.to_owned(), known }.into())
     }
 

@@ -51,23 +51,24 @@ pub(super) trait Steps: Send {
     fn records(&self) -> &[EventRecord];
     /// Returns the controls whose frames are rigidly connected to the frames that they follow.
     fn attached_controls(&self) -> Vec<AttachedControl>;
-    /// Returns the closed loops and mimic joints that have been in a singular configuration.
+    /// Returns the closed loops and mimic joints that have been in, or near, a singular configuration.
     fn singular_loops(&self) -> &[SingularLoop];
-    /// Returns the index of the event with this name if it can be triggered; `None` if the group has no such
-    /// event.
+    /// Returns the index of the event with this name, or an error if the event cannot be triggered; `None` if
+    /// the group has no such event.
     fn check_trigger(&self, name: &str) -> Result<Option<usize>, SimulationError>;
     fn trigger(&mut self, event: usize) -> Result<(), SimulationError>;
     fn checkpoint(&self) -> Result<GroupCheckpoint, SimulationError>;
     fn rows(&self, system: usize) -> &Trace;
-    /// Removes all rows of each system except the first one and the last `keep`; if `is_checked`, the
-    /// certificate still includes the removed rows.
+    /// Removes all rows of each system except the first one and the last `keep`. If `is_checked`, at least 16
+    /// last rows remain and the certificate still includes the removed rows.
     fn drop_rows(&mut self, keep: usize, is_checked: bool);
     fn recording(&mut self) -> Result<GroupRecording, SimulationError>;
     /// Returns the row of each system at the current time.
     fn present_rows(&mut self) -> Result<Vec<Trace>, SimulationError>;
     /// Adds a row at the current time.
     fn record_current_time(&mut self) -> Result<(), SimulationError>;
-    /// Removes the rows recorded so far and returns them with the error estimates and the outcomes of goals.
+    /// Removes the rows and event records of the run so far and returns them, with the error estimates, the
+    /// outcomes of goals and the balance of the group.
     fn take_rows(&mut self) -> GroupRecording;
 }
 
@@ -82,7 +83,7 @@ impl<S: Scalar> Steps for RunState<'_, S> {
 
     fn check_time(&self, t: f64) -> Result<(), SimulationError> {
         if !t.is_finite() {
-            return Err(SimulationError::NotPositive { name: "t", value: t });
+            return Err(SimulationError::TimeNotFinite { t });
         }
         if self.schedule.is_later(self.time, t) {
             return Err(SimulationError::PastTime { t, time: self.time });

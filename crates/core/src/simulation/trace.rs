@@ -1,4 +1,4 @@
-//! Trace of a run.
+//! Trace of one system of a run.
 
 use super::certificate::{PairChecks, RowChecks};
 use super::columns::{CONTACTS, Column, LOOPS, TRACKING, WRENCHES};
@@ -11,9 +11,9 @@ use std::borrow::Cow;
 macro_rules! define_trace {
     ($($name:ident ($($axis:tt),+), $unit:literal, $frame:literal, $condition:ident, $parts:ident,
         $meaning:literal;)+) => {
-        /// Result of a run, with one row per recorded step. The first row is the initial state and the last
-        /// row the final state. Columns are in row-major order; columns that do not apply to the run are
-        /// empty.
+        /// Recorded motion of one system of a run, with one row per recorded step. The first row is the
+        /// initial state and the last row the final state. Columns are in row-major order; columns that do
+        /// not apply to the run are empty.
         #[derive(Clone, Debug, Default)]
         pub struct Trace {
             $(
@@ -23,7 +23,8 @@ macro_rules! define_trace {
             /// Tracking errors of the controls, m and rad or, for a grip force, N, one column per control;
             /// see [`TRACKING`].
             pub tracking: Vec<NamedColumn>,
-            /// Wrenches of the effects on every body, one column per effect; see [`WRENCHES`].
+            /// Wrenches on every body: one column per effect and, if a control follows external commands,
+            /// one column for the commanded wrenches; see [`WRENCHES`].
             pub wrenches: Vec<NamedColumn>,
             /// Distances and forces of the contacts of which the system is the first side, one column per
             /// contact; see [`CONTACTS`].
@@ -148,7 +149,7 @@ impl CoordinateDrift {
 pub struct GoalResult {
     /// Name of the control.
     pub name: String,
-    /// Outcome of the goal.
+    /// Whether the control has reached its goal, and when, or which error was too large.
     pub outcome: Outcome,
     /// Component whose error was too large: the name of a joint, `position`, `attitude` or `force`; `None` if
     /// no error was too large.

@@ -20,8 +20,8 @@ pub(crate) struct Tree<'a, S> {
     pub(crate) data: Data<S>,
     /// Commanded joint torques, `(n,)`, N m or N, without the compensation of Coulomb friction.
     pub(crate) command: Vec<S>,
-    /// Generalized forces of a stage, `(nv,)`, N m or N: sum of the command and of the torques of springs,
-    /// damping and friction; zero at the base.
+    /// Generalized forces of a stage, `(nv,)`, N m or N: the sum of the command and of the torques of
+    /// springs, damping, friction and brakes; zero at the base.
     pub(super) forces: Vec<S>,
     /// Buffer for accelerations or changes of velocity, `(nv,)`.
     pub(super) scratch: Vec<S>,
@@ -37,7 +37,7 @@ pub(crate) struct Tree<'a, S> {
     /// True for each joint, `(n,)`, that the last projection onto the loops did not move; empty if there were
     /// no such joints.
     pub(super) kept: Vec<bool>,
-    /// True if any joint has damping or friction.
+    /// True if any joint has damping, friction or a brake.
     is_lossy: bool,
     /// Indices of the joints with springs, each with its spring.
     springs: Vec<(usize, JointSpring)>,
@@ -283,8 +283,8 @@ impl<'a, S: Real> Tree<'a, S> {
 
     /// Computes the generalized forces at the joints, N m or N, `τ − k d − k₃ d³ − b q̇ − f s`, with the
     /// commanded torque `τ`, the stiffnesses `k` and `k₃` and the deflection `d` of the spring, the damping
-    /// `b`, the Coulomb friction `f` and the direction of slip `s`, and writes them to `forces`. The friction
-    /// `f s` is omitted for joints whose motors compensate it.
+    /// `b`, the Coulomb friction `f` of the joint and of an engaged brake, and the direction of slip `s`, and
+    /// writes them to `forces`. For joints whose motors compensate friction, `f` is that of the brake alone.
     pub(super) fn update_joint_forces(&mut self, q: &[S], v: &[S]) {
         let Self { model, modes, command, forces, is_lossy, springs, .. } = self;
         forces[BASE_NV..].copy_from_slice(command);

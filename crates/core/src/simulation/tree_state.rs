@@ -19,14 +19,15 @@ pub(crate) struct TreeState<S> {
     /// N m s. In a group with contacts, the moments of a step are about the common centre of mass until the
     /// step ends.
     pub(crate) impulse: Momentum<S>,
-    /// Work done by motors and external wrenches less the energy dissipated in the joints, J, since the start
-    /// of the run or, in a tree with several members, since its assembly.
+    /// Work done by motors, springs and external wrenches less the energy dissipated in the joints, J, since
+    /// the start of the run or, in a tree with several members, since its assembly.
     pub(crate) work: S,
-    /// Energy dissipated by damping, friction and stops of the joints, J, over the same time as `work`.
+    /// Energy dissipated by the damping, friction, brakes and stops of the joints, J, over the same time as
+    /// `work`.
     pub(crate) dissipated: S,
     /// Position of the centre of mass in W, m, integrated from its velocity; `None` in a run with a single
-    /// tree. Once per step the base is shifted so that its centre of mass agrees with this position; the
-    /// angular momentum of several trees about a common point is then exact.
+    /// tree. Once per step the base is shifted so that the centre of mass of the tree is at this position;
+    /// the angular momentum of several trees about a common point is then exact.
     pub(crate) center: Option<Vec3<S>>,
     /// Parts of `dissipated` that belong to the joints of each member, J; empty for a tree with a single
     /// member.
@@ -52,9 +53,9 @@ pub(crate) struct TreeRate<S> {
     /// Time derivative of the momentum: the sum of the external forces, and of their moments about the centre
     /// of mass, W axes, N and N m; in a group with contacts, about the common centre of mass.
     pub(crate) wrench: Momentum<S>,
-    /// Power of the motors and external wrenches less the power dissipated in the joints, W.
+    /// Power of the motors, springs and external wrenches less the power dissipated in the joints, W.
     pub(crate) power: S,
-    /// Power dissipated by damping and friction, W.
+    /// Power dissipated by the damping, friction and brakes of the joints, W.
     pub(crate) loss: S,
     /// Velocity of the centre of mass, linear momentum over mass, W axes, m/s; `None` in a run with a single
     /// tree.
@@ -121,7 +122,7 @@ impl<S: Real> TreeRate<S> {
         self.clock = from.clock;
     }
 
-    /// Sets the rates that [`TreeRate::accumulate`] sums to zero.
+    /// Sets to zero the rates to which [`TreeRate::accumulate`] adds.
     #[inline(always)]
     pub(crate) fn clear(&mut self) {
         (self.base_velocity, self.rotation_rate, self.wrench) =

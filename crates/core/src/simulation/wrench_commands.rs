@@ -84,8 +84,8 @@ impl WrenchCommands {
     pub(super) fn add_to(&self, bodies: &Bodies, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         for Held { place, body, point, force, torque, axes } in &self.held {
             let index = BodyIndex { system: place.0, body: *body };
-            let unknown = EnvironmentError::UnknownBody { body: index, count: bodies.len() };
-            let body = bodies.get(index).ok_or(unknown)?;
+            let unknown = || EnvironmentError::UnknownBody { body: index, known: bodies.known(index.system) };
+            let body = bodies.get(index).ok_or_else(unknown)?;
             let in_w = |vector: &[f64; 3]| match axes {
                 WrenchAxes::World => Vector3::from(*vector),
                 WrenchAxes::Body => body.rot_wk * Vector3::from(*vector),

@@ -9,7 +9,8 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 /// Scalar `f64` whose [`mul_add`](Real::mul_add) compiles to one instruction.
 ///
 /// It must be used inside [`Real::enter`], on a processor for which [`Fused::is_available`] returns true; on
-/// other processors `enter` panics. Outside `enter`, the results are the same, but their computation is slow.
+/// other x86-64 processors `enter` panics. Outside `enter`, the results are the same, but their computation
+/// is slow.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 #[repr(transparent)]
 pub struct Fused(pub f64);

@@ -53,8 +53,8 @@ impl<S: Real> Quat<S> {
         Self { v: self.v * s, w: self.w * s }
     }
 
-    /// Normalizes a quaternion whose norm differs from one only by rounding, with one Newton step for
-    /// `1/|q|`.
+    /// Returns a quaternion whose norm differs from one only by rounding, scaled to unit length by one Newton
+    /// step for `1/|q|`.
     #[inline(always)]
     #[must_use]
     pub fn renormalized(self) -> Self {
@@ -110,7 +110,7 @@ impl<S: Real> Quat<S> {
     }
 }
 
-/// Returns `exp(θ)`: the rotation by the angle `|θ|`, rad, about `θ`.
+/// Returns `exp(θ)` as a unit quaternion: the rotation by the angle `|θ|`, rad, about `θ`.
 #[inline(always)]
 pub fn exp_so3<S: Real>(theta: Vec3<S>) -> Quat<S> {
     // q = (sin(φ/2)/φ θ, cos(φ/2)); below 0.25 rad, which covers every step of a simulation, use the series
@@ -174,8 +174,8 @@ pub fn log_rotation<S: Real>(r: &Mat3<S>) -> Vec3<S> {
     log_so3(Quat::from_matrix(r))
 }
 
-/// Returns the time derivative of the rotation vector `θ` in `R = R₀ exp(θ)` for the angular velocity `ω` in
-/// body axes: `θ̇ = ω + ½ θ×ω + b θ×(θ×ω)`.
+/// Returns the time derivative, rad/s, of the rotation vector `θ`, rad, in `R = R₀ exp(θ)` for the angular
+/// velocity `ω`, rad/s in body axes: `θ̇ = ω + ½ θ×ω + b θ×(θ×ω)`.
 ///
 /// `b = 1/12 + |θ|²/720` truncates the series of the inverse differential of the exponential. The error is of
 /// sixth order in `θ`, below the error of the integrators, for which `θ` is the rotation of one step. Because

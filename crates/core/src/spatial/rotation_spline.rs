@@ -34,8 +34,8 @@ impl RotationSpline {
     /// Creates the spline through the attitudes (K,) at `times` (K,), s, that is at rest at every attitude.
     ///
     /// # Errors
-    /// [`SplineError`] for fewer than two points, wrong lengths, numbers that are not finite, times that do
-    /// not increase, or successive attitudes half a turn apart.
+    /// [`SplineError`] for fewer than two points, wrong lengths, numbers that are not finite or exceed 1e60
+    /// in magnitude, times that do not increase, or successive attitudes half a turn apart.
     pub fn resting(times: &[f64], attitudes: &[Quat<f64>]) -> Result<Self, SplineError> {
         let zeros = vec![Vec3::zero(); attitudes.len()];
         Self::new(times, attitudes, &zeros, &zeros)

@@ -1,7 +1,7 @@
 //! C² curves through given points.
 
 use super::quintic_spline::curvatures;
-use crate::number_text::{count, short, unlike};
+use crate::number_text::{count, exact, short, unlike};
 use thiserror::Error;
 
 /// Errors of points and times that do not define a curve.
@@ -10,7 +10,7 @@ use thiserror::Error;
 pub enum SplineError {
     #[error(
         "'{name}' contains {value} at point {point}; it must be finite and within ±1e60 (SI units)",
-        value = short(*value)
+        value = exact(*value)
     )]
     NotFinite { name: &'static str, point: usize, value: f64 },
     #[error("the array '{name}' has {got}; expected {expected} (one row per time)", got = count(*got, "number"))]
@@ -204,7 +204,8 @@ fn quintic(h: f64, u: f64, [p, v, a]: [f64; 3], [p1, v1, a1]: [f64; 3]) -> [f64;
     [value, slope, curvature]
 }
 
-/// Checks that there are at least two times and that they increase.
+/// Checks that there are at least two times, that they increase, and that they are finite and at most 1e60 in
+/// magnitude.
 pub(super) fn check_times(times: &[f64]) -> Result<(), SplineError> {
     if times.len() < 2 {
         return Err(SplineError::TooFew { got: times.len(), least: 2 });

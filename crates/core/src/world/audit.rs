@@ -5,7 +5,8 @@ use crate::dynamics::{Data, base_rotation, kinematics, kinetic_energy};
 use crate::model::Model;
 use crate::spatial::{Force, Motion, Scalar, Vec3};
 
-/// Smallest speed, m/s, from which the linear scale of a body is computed, so that no scale is zero.
+/// Lower bound of the speed from which the linear scale of a body is computed, m/s; it keeps the scale of a
+/// body at rest from being zero.
 const REST: f64 = 1e-9;
 /// Smallest angular scale of a body, relative to `|r| |p| + |H|`, because `r × p` and `H` may cancel; `r` is
 /// the arm from the reference point to the body's origin, `p` the linear momentum, and `H` the angular

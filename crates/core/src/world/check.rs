@@ -104,14 +104,11 @@ fn check_action(systems: &[System], events: &[Event], event: &Event) -> Result<(
             if !reason.is_empty() {
                 return Err(WorldError::UnknownEvent { event: name(), other: *capture, reason });
             }
-            let value = impulse.iter().copied().find(|x| !x.is_finite());
-            let wrong = |value| WorldError::Number {
-                event: name(),
-                what: "the impulse",
-                value,
-                unit: "N s or N m s",
-                expected: "finite",
+            let wrong = |(index, &value): (usize, &f64)| {
+                let (what, unit) = [("the impulse", "N s"), ("the angular impulse", "N m s")][index / 3];
+                WorldError::Number { event: name(), what, value, unit, expected: "finite" }
             };
+            let value = impulse.iter().enumerate().find(|(_, x)| !x.is_finite());
             value.map_or(Ok(()), |value| Err(wrong(value)))
         }
         Action::Engage(BrakeIndex { system, brake }) | Action::Disengage(BrakeIndex { system, brake }) => {
@@ -132,7 +129,7 @@ fn check_seat(event: &Event, seat: &Seat) -> Result<(), WorldError> {
         Err(WorldError::Number { event: event.name.clone(), what, value, unit, expected })
     };
     if TimeLaw::quintic(seat.duration).is_err() || seat.duration > LONGEST {
-        return wrong("the duration of seat", seat.duration, "s", "from 1e-12 s to 1e9 s");
+        return wrong("the duration of the seat", seat.duration, "s", "from 1e-12 s to 1e9 s");
     }
     let RigidPose { rotation, position } = &seat.pose;
     if let Some(value) = position.iter().copied().find(|x| !x.is_finite()) {
@@ -158,7 +155,7 @@ fn check_when(events: &[Event], event: &Event) -> Result<(), WorldError> {
         false => Err(WorldError::Number { event: name(), what, value, unit, expected }),
     };
     let is_time = |t: f64| t.is_finite() && t >= 0.0;
-    const LATER: &str = "zero or positive, and finite";
+    const LATER: &str = "finite and at least 0 s";
     match &event.when {
         &When::At(t) => check("the time", t, "s", LATER, is_time(t)),
         &When::After { event: other, delay } => {

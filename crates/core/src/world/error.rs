@@ -1,7 +1,7 @@
 //! Errors of the systems and events of a world.
 
 use crate::model::ModelError;
-use crate::number_text::{indices, short};
+use crate::number_text::{choice, exact, names, short};
 use thiserror::Error;
 
 /// Reason why a system or an event of a world is invalid.
@@ -30,32 +30,36 @@ pub enum WorldError {
     )]
     OwnReferenceFrame { system: String },
     #[error(
-        "a reference of the system '{system}' is given in frame {frame} of system {other}, which does not exist; give \
-         the index of another system and of one of its frames"
+        "a reference of the system '{system}' is given in frame {frame} of system {other}, but there is no such \
+         system or frame; give the index of another system and of one of its frames"
     )]
     ReferenceFrame { system: String, other: usize, frame: usize },
     #[error("the event '{event}' would connect two systems to form an invalid robot: {source}")]
     Merged { event: String, source: ModelError },
     #[error(
-        "the event '{event}' refers to system {system}, but the world has {known}; give one of these indices",
-        known = indices(*count, "system")
+        "the event '{event}' refers to system {system}, but the world has {known}",
+        known = choice(*count, "system")
     )]
     UnknownSystem { event: String, system: usize, count: usize },
     #[error(
-        "the event '{event}' refers to frame {frame} of the system '{system}', which has {known}; give one of these \
-         indices",
-        known = indices(*count, "frame")
+        "the event '{event}' refers to frame {frame} of the system '{system}', which has {known}",
+        known = choice(*count, "frame")
     )]
     UnknownFrame { event: String, system: String, frame: usize, count: usize },
     #[error("the event '{event}' refers to event {other}, which {reason}")]
     UnknownEvent { event: String, other: usize, reason: &'static str },
-    #[error("the event '{event}' waits for itself; let it happen at a time or on command")]
+    #[error(
+        "the event '{event}' waits for itself, so it can never happen; let it happen at a time or on command"
+    )]
     AfterItself { event: String },
-    #[error("the events {names} wait for each other; let one of them happen at a time or on command")]
+    #[error(
+        "the events {names} wait for each other, so they can never happen; let one of them happen at a \
+         time or on command"
+    )]
     Circle { names: String },
     #[error(
         "{what} of the event '{event}' is {value}{space}{unit}; it must be {expected}",
-        value = short(*value), space = if unit.is_empty() { "" } else { " " }
+        value = exact(*value), space = if unit.is_empty() { "" } else { " " }
     )]
     Number { event: String, what: &'static str, value: f64, unit: &'static str, expected: &'static str },
     #[error("the event '{event}' has a latch, but only a capture can have one; use at, after or on_command")]
@@ -74,8 +78,8 @@ pub enum WorldError {
     #[error("two brakes of one system have the name '{name}'; give each brake a different name")]
     BrakeTwice { name: String },
     #[error(
-        "the brake '{name}' is on joint {joint}, but the robot has {known}; give one of these indices",
-        known = indices(*count, "joint")
+        "the brake '{name}' is on joint {joint}, but the robot has {known}",
+        known = choice(*count, "joint")
     )]
     BrakeJoint { name: String, joint: usize, count: usize },
     #[error(
@@ -95,9 +99,8 @@ pub enum WorldError {
     )]
     HeldJointMoves { name: String, joint: String, rate: f64 },
     #[error(
-        "the event '{event}' refers to brake {brake} of the system '{system}', which has {known}; give one of these \
-         indices",
-        known = indices(*count, "brake")
+        "the event '{event}' refers to brake {brake} of the system '{system}', which has {known}",
+        known = choice(*count, "brake")
     )]
     UnknownBrake { event: String, system: String, brake: usize, count: usize },
     #[error("the world has no event '{name}'; {known}")]
@@ -114,7 +117,7 @@ pub enum LatchContact {
         /// Names of the contacts of the world.
         known: Vec<String>,
     },
-    /// The contact has no law of a compliant normal force.
+    /// The contact has no compliant normal-force law.
     NoForce,
     /// The contact is not between the two systems of the capture.
     OtherSystems,
@@ -127,13 +130,13 @@ fn why(problem: &LatchContact) -> String {
             "the world has no contacts; declare one between the links that touch".to_owned()
         }
         LatchContact::Unknown { known } => {
-            format!("there is no contact with this name; the contacts are: {}", known.join(", "))
+            format!("there is no contact with this name; {}", names(known, "contact"))
         }
         LatchContact::NoForce => {
             "it has no compliant normal force, which a latch requires; give the contact one, such as HuntCrossley".to_owned()
         }
         LatchContact::OtherSystems => {
-            "it is not between the two systems of the capture; give a contact between both".to_owned()
+            "it is not between the two systems of the capture; give a contact between these two".to_owned()
         }
     }
 }

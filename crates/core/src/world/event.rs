@@ -35,19 +35,19 @@ pub struct Event {
 /// Condition under which an event happens.
 #[derive(Clone, Debug, PartialEq)]
 pub enum When {
-    /// At the given simulation time, s.
+    /// The event happens at the given simulation time, s.
     At(f64),
-    /// After a delay that begins when another event happens.
+    /// The event happens after a delay that begins when another event happens.
     After {
         /// Index of the other event.
         event: usize,
         /// Delay after the other event, s.
         delay: f64,
     },
-    /// When the caller of the stepper triggers the event.
+    /// The event happens when the caller of the stepper triggers it.
     OnCommand,
-    /// When the two frames of a capture have satisfied the conditions of an envelope for the time
-    /// [`Envelope::held_for`].
+    /// The event, a capture, happens when its two frames have satisfied the conditions of an envelope for
+    /// the time [`Envelope::held_for`].
     Latch(Envelope),
 }
 
@@ -145,6 +145,6 @@ pub struct Weld {
     /// Pose of the captured frame in the capturing frame; during a seating motion, the pose at the start of
     /// that motion.
     pub pose: RigidPose,
-    /// Seating motion to the nominal pose; `None` after the motion has ended.
+    /// Seating motion to the nominal pose; `None` without such a motion or after it has ended.
     pub seating: Option<Seating>,
 }

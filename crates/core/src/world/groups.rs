@@ -33,7 +33,8 @@ impl Union {
 
 /// Returns the indices of the systems that the event `number` involves, possibly with repetitions: both
 /// systems of a capture or of the capture that a release ends, or the system of a brake. For an event that
-/// waits for another event, these include the systems of that other event.
+/// waits for another event, they include the systems of that event and of the events for which it waits in
+/// turn.
 pub fn systems_of(events: &[Event], number: usize) -> Vec<usize> {
     let (mut all, mut at) = (Vec::new(), number);
     for _ in 0..=events.len() {

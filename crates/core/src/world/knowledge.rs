@@ -4,8 +4,8 @@ use super::event::{Action, Event};
 use super::groups::Union;
 use super::system::System;
 
-/// Entry of [`System::knows`] that has no effect, because captures connect the two systems only through
-/// systems that are not known, or not at all.
+/// Entry of [`System::knows`] that has no effect: no chain of captures connects the two systems, or every
+/// such chain contains a system whose model is not known.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct IdleKnowledge {
     /// Index of the system whose controllers know the other system.
@@ -41,8 +41,8 @@ pub fn idle_knowledge(systems: &[System], events: &[Event]) -> Vec<IdleKnowledge
     found
 }
 
-/// Returns the systems on a shortest path along `pairs` from the system `from` to the system `to`, in order;
-/// empty if there is no path. `count` is the number of systems.
+/// Returns the systems on a shortest path along `pairs` that starts at the system `from` and ends before the
+/// system `to`, in order; empty if there is no path. `count` is the number of systems.
 fn path(count: usize, pairs: &[[usize; 2]], from: usize, to: usize) -> Vec<usize> {
     let mut before = vec![None; count];
     let (mut queue, mut next) = (vec![from], 0);

@@ -21,8 +21,7 @@ pub struct System {
     /// Controls of the joints. A joint without an active control has no motor torque, unless the caller of a
     /// stepper commands one.
     pub controls: Vec<Control>,
-    /// Time between two updates of the controllers, s; `None` if the controllers are updated at every
-    /// step.
+    /// Time between two updates of the controllers, s; `None` selects the length of a regular step.
     pub control_period: Option<f64>,
     /// Index of the frame whose pose is recorded and compared with the reference; `None` for a system without
     /// a tool.

@@ -64,8 +64,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 ///     If only one of ``controller`` and ``reference`` is given, if ``tau`` is given as well, if the
 ///     controller is of another kind or for another robot, or if the reference is in the frame ``"lvlh"``.
 /// InputError, ShapeError
-///     If a number is invalid, the integrator is not one of those listed, a state opens a loop that has
-///     ``project=False``, or an array has the wrong shape.
+///     If a number is invalid, the integrator is not one of those listed, an initial state opens a loop that
+///     has ``project=False`` or that cannot be closed, or an array has the wrong shape.
 #[pyfunction]
 #[pyo3(signature = (
     model, q0, v0, *, steps, time_step=1e-3, tau=None, controller=None, reference=None, integrator="rk4",
@@ -111,7 +111,7 @@ pub(super) fn rollout<'py>(
             return Err(plain(
                 py,
                 "ControlError",
-                "a reference is given, but no controller that tracks it; give a controller",
+                "a reference is given, but no controller that tracks it; give a controller, or omit the reference",
             ));
         }
         (None, None, None) => RolloutControl::Passive,
@@ -130,7 +130,7 @@ pub(super) fn rollout<'py>(
             return Err(plain(
                 py,
                 "ControlError",
-                "a controller is given, but no reference to track; give a reference",
+                "a controller is given, but no reference to track; give a reference, or omit the controller",
             ));
         }
         (Some(_), Some(_), _) => {

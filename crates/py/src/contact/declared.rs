@@ -28,7 +28,7 @@ use std::sync::Arc;
 ///     Law of friction; default: no friction. It requires a compliant normal force: an ``ImpactLaw`` has its
 ///     own coefficient of friction.
 /// name : str, optional
-///     Name of the contact; default: ``"links_a|links_b"``.
+///     Name of the contact; default: the links of both sides, such as ``"chaser/gripper|target/handle"``.
 /// start_overlapping : bool
 ///     If True, the links may overlap at the start of a run. It cannot be combined with an ``ImpactLaw``.
 ///

@@ -263,15 +263,15 @@ pub(super) fn normal_law(value: &Bound<'_, PyAny>) -> PyResult<Law> {
 /// kinetic : float, optional
 ///     Coefficient of kinetic friction; default: ``static``.
 /// torsional : float, optional
-///     Coefficient of torsional friction, m: the largest moment about the normal per unit of normal force.
-///     For a uniformly pressed disc, it is two thirds of the friction coefficient times the radius. Default:
-///     0, no torsional friction.
+///     Coefficient of kinetic torsional friction, m: the moment about the normal per unit of normal force
+///     while the contact slips. For a uniformly pressed disc, it is two thirds of the kinetic coefficient
+///     times the radius. Default: 0, no torsional friction.
 /// stiffness : float, optional
 ///     Tangential stiffness inside the cone, N/m; default: 0.82 times the stiffness of the normal force (at a
 ///     depth of 0.1 mm if that stiffness varies), as for elastic bodies with Poisson's ratio 0.3.
 /// damping : float, optional
-///     Tangential damping inside the cone, N s/m; default: a tenth of critical damping. A value below a hundredth
-///     of critical damping, such as 0, is replaced by a hundredth.
+///     Tangential damping inside the cone, N s/m; default: a tenth of critical damping. A value below a
+///     hundredth of critical damping, such as 0, is raised to that hundredth.
 ///
 /// Raises
 /// ------
@@ -290,7 +290,7 @@ pub(crate) struct PyFriction {
     /// Coefficient of kinetic friction, dimensionless.
     #[pyo3(get)]
     kinetic: f64,
-    /// Coefficient of torsional friction, m; 0 without torsional friction.
+    /// Coefficient of kinetic torsional friction, m; 0 without torsional friction.
     #[pyo3(get)]
     torsional: f64,
     /// Tangential stiffness inside the friction cone, N/m; None for the default.
@@ -337,6 +337,8 @@ impl PyFriction {
     /// ------
     /// InputError
     ///     If the table has no coefficients for the pair; the message lists the known pairs.
+    /// WorldError
+    ///     If another parameter is outside its range.
     ///
     /// Notes
     /// -----

@@ -37,7 +37,7 @@ impl PyContactTrace {
     }
 
     /// Point at which the force acts, (T, 3), m, in W; without a force, midway between the nearest points of
-    /// both sides. If several pairs of pieces touch, it is that of the pair with the smallest gap.
+    /// both sides. If several pairs of convex pieces touch, it is that of the pair with the smallest gap.
     #[getter]
     fn point<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         part_of(&CONTACTS, self.values.bind(py), "point")

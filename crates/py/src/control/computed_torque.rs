@@ -16,7 +16,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 ///
 /// The tool's acceleration is ``ẍ = ẍd + kd (ẋd - ẋ) + kp (xd - x)`` with the desired pose ``xd`` and the
 /// actual pose ``x``, away from singularities of the generalized Jacobian. This is Eq. (6)-(8) of the
-/// OnOrbitROS paper (cited in ``docs/concepts/control.md``), with the exact drift.
+/// OnOrbitROS paper (cited in ``docs/concepts/control.md``), with the exact drift. The torques of springs at
+/// the joints are always compensated.
 ///
 /// Parameters
 /// ----------

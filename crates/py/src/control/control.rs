@@ -19,7 +19,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 ///
 /// The goal fails if an error exceeds ``path_tolerance`` before the end of the reference. After the end, the
 /// goal is reached as soon as all errors are within ``tolerance``, and fails after ``time``. The outcome is
-/// stored in ``trace.results``. After a failure, the control holds the current pose or joint positions.
+/// stored in ``trace.results``. After a failure, the control holds the current pose or joint positions;
+/// commanded rates become zero, and a :class:`GripForce` continues unchanged.
 ///
 /// Parameters
 /// ----------
@@ -105,7 +106,8 @@ impl PyGoal {
 /// Raises
 /// ------
 /// DtypeError
-///     If ``joints`` is not a list of names, or ``after`` is not a name.
+///     If ``joints`` is not a list of names, ``after`` or ``load`` is not a name, or ``internal_forces`` is
+///     not a list of :class:`InternalForce`.
 #[pyclass(name = "Control", frozen, module = "onorbit_rs")]
 pub(crate) struct PyControl {
     controller: Py<PyAny>,

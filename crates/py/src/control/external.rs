@@ -16,8 +16,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// :class:`JointComputedTorque` plus the commanded effort. A command of positions without velocities means
 /// that the joints rest there; a command of velocities without positions causes no position error. If a
 /// command has only efforts, they are the torques. Before the first command, the joints hold their initial
-/// positions if ``kp`` is positive, come to rest if only ``kd`` is positive, and have no torque if both are
-/// zero.
+/// positions if ``kp`` is positive for all of them. Otherwise they come to rest if ``kd`` is positive for all
+/// of them, and have no torque if it is not.
 ///
 /// Parameters
 /// ----------
@@ -34,11 +34,10 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 ///     without positions, at their positions at the timeout. ``damp``: ``kd`` brings the joints to rest.
 ///     ``zero``: the joints have no torque.
 /// compensate_environment : bool
-///     Compensation of external wrenches as for :class:`JointComputedTorque`; it applies while positions or
-///     velocities are commanded.
+///     If True, the wrenches of the environment are compensated while positions or velocities are commanded.
 /// compensate_friction : bool
-///     Compensation of friction as for :class:`JointComputedTorque`; it applies while positions or velocities
-///     are commanded.
+///     If True, friction is compensated as by :class:`JointComputedTorque` while positions or velocities are
+///     commanded.
 ///
 /// Raises
 /// ------

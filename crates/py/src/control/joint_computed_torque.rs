@@ -12,7 +12,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// Joint-space computed torque on the reduced model.
 ///
 /// If all external wrenches and friction are compensated, the error ``e`` of each joint (desired minus actual
-/// position) obeys ``e'' + kd e' + kp e = 0`` for any motion of the base.
+/// position) obeys ``e'' + kd e' + kp e = 0`` for any motion of the base. The torques of springs at the
+/// joints are always compensated.
 ///
 /// Parameters
 /// ----------

@@ -51,9 +51,9 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 ///
 /// Raises
 /// ------
-/// EarthError, NotFoundError, ReadError
-///     If an argument is invalid or does not apply to the chosen ``rotation``, or if a file does not exist or
-///     cannot be read.
+/// EarthError, ShapeError, NotFoundError, ReadError
+///     If an argument is invalid or does not apply to the chosen ``rotation``, if an array has the wrong
+///     shape, or if a file does not exist or cannot be read.
 #[pyclass(name = "Earth", frozen, module = "onorbit_rs")]
 pub(crate) struct PyEarth {
     pub(crate) earth: Arc<Earth>,
@@ -191,7 +191,7 @@ impl PyEarth {
     /// Raises
     /// ------
     /// EarthError
-    ///     Without an epoch, or if a time is not finite, outside 1900 to 2100, or outside the kernel.
+    ///     If the Earth has no epoch, or a time is not finite, outside 1900 to 2100, or outside the kernel.
     fn sun<'py>(&self, py: Python<'py>, t: Any<'_, 'py>) -> PyResult<Bound<'py, PyAny>> {
         self.at(py, t, &[3], Earth::suns)
     }
@@ -211,7 +211,7 @@ impl PyEarth {
     /// Raises
     /// ------
     /// EarthError
-    ///     Without an epoch, or if a time is not finite, outside 1900 to 2100, or outside the kernel.
+    ///     If the Earth has no epoch, or a time is not finite, outside 1900 to 2100, or outside the kernel.
     fn moon<'py>(&self, py: Python<'py>, t: Any<'_, 'py>) -> PyResult<Bound<'py, PyAny>> {
         self.at(py, t, &[3], Earth::moons)
     }

@@ -9,9 +9,11 @@ impl IntoPython for InputError {
     fn into_python(self, py: Python<'_>) -> PyErr {
         let message = self.to_string();
         match &self {
-            Self::WrongLength { name, expected, got } | Self::WrongBatch { name, expected, got } => {
-                shape_error(py, &message, name, expected, got)
-            }
+            Self::WrongLength { name, expected, got }
+            | Self::WrongTotal { name, expected, got }
+            | Self::WrongBatch { name, expected, got } => shape_error(py, &message, name, expected, got),
+            Self::WrongElements { name, states, got } => shape_error(py, &message, name, states, got),
+            Self::UnevenTimes { orbits, got } => shape_error(py, &message, "times", orbits, got),
             Self::Ragged { name, width, got } => shape_error(py, &message, name, width, got),
             Self::WrongCount { what, expected, got } => shape_error(py, &message, what, expected, got),
             Self::WrongOutput { expected, got, .. } => shape_error(py, &message, "out", expected, got),
@@ -46,8 +48,8 @@ impl IntoPython for InputError {
                 raise(py, "InputError", &message, &fields)
             }
             Self::Diverged { .. } => plain(py, "SimulationError", &message),
-            Self::QuaternionNorm { norm, .. } => {
-                raise(py, "InputError", &message, &fields!(py, "name": "q", "got": norm, "expected": 1.0))
+            Self::QuaternionNorm { name, norm, .. } => {
+                raise(py, "InputError", &message, &fields!(py, "name": name, "got": norm, "expected": 1.0))
             }
         }
     }

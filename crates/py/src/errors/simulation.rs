@@ -1,4 +1,4 @@
-//! Converts errors of runs to Python exceptions, some of which carry the partial trace.
+//! Converts errors of runs to Python exceptions, some of which have the trace of the run so far.
 
 use super::{IntoPython, fields, plain, raise, shape_error, with_message};
 use onorbit_core::contact::ContactError;
@@ -6,7 +6,8 @@ use onorbit_core::control::ControlError;
 use onorbit_core::simulation::SimulationError;
 use pyo3::prelude::*;
 
-/// Converts the error of a run to a Python exception and attaches the partial trace, if there is one.
+/// Converts the error of a run to a Python exception. Errors during a run also get the trace so far, if it is
+/// given, as the attribute `trace`.
 pub(crate) trait SimulationErrorExt {
     fn into_python_with(self, py: Python<'_>, trace: Option<Py<PyAny>>) -> PyErr;
 }
@@ -22,6 +23,9 @@ impl SimulationErrorExt for SimulationError {
             }
             Self::QuaternionNorm { norm } => {
                 raise(py, "InputError", &message, &fields!(py, "name": "q", "got": norm, "expected": 1.0))
+            }
+            Self::TimeNotFinite { t } => {
+                raise(py, "InputError", &message, &fields!(py, "name": "t", "got": t))
             }
             Self::TimeStep { value } => raise(
                 py,
@@ -147,7 +151,7 @@ impl SimulationErrorExt for SimulationError {
     }
 }
 
-/// Adds the time and the partial trace to an error.
+/// Sets the attributes `time`, s, and `trace`, the trace of the run so far, of an exception, and returns it.
 fn with_trace(py: Python<'_>, error: PyErr, time: f64, trace: Option<Py<PyAny>>) -> PyErr {
     let value = error.value(py);
     let _ = value.setattr("time", time);

@@ -15,9 +15,9 @@ use std::sync::Arc;
 ///
 /// As an effect of a simulation, the field acts on every body. Its ``mu`` is then used instead of the orbit's
 /// value; if the relative difference of the two exceeds 1e-5, the simulation raises ``GravityError``. The
-/// orientation of the planet is that of the simulation's ``earth``. A field of order 0
-/// does not require an ``earth``; without one, the axis of the field is z. Positions are from the planet's
-/// centre in planet-fixed axes.
+/// orientation of the planet is that of the simulation's ``earth``. A field of order 0 does not require an
+/// ``earth``; without one, the axis of the field is z. Positions are from the planet's centre in planet-fixed
+/// axes.
 ///
 /// Parameters
 /// ----------
@@ -255,7 +255,7 @@ impl PyGravityField {
     /// Raises
     /// ------
     /// GravityError
-    ///     If a position is inside the planet, that is, below 0.996 of the reference radius.
+    ///     If a position is not finite, or is closer to the centre than 0.996 of the reference radius.
     /// ShapeError
     ///     If ``r`` has another shape.
     fn acceleration<'py>(&self, py: Python<'py>, r: Any<'_, 'py>) -> PyResult<Bound<'py, PyAny>> {
@@ -278,7 +278,7 @@ impl PyGravityField {
     /// Raises
     /// ------
     /// GravityError
-    ///     If a position is inside the planet, that is, below 0.996 of the reference radius.
+    ///     If a position is not finite, or is closer to the centre than 0.996 of the reference radius.
     /// ShapeError
     ///     If ``r`` has another shape.
     fn gradient<'py>(&self, py: Python<'py>, r: Any<'_, 'py>) -> PyResult<Bound<'py, PyAny>> {

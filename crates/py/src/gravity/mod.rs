@@ -17,8 +17,8 @@ pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<third_body::PyThirdBody>()
 }
 
-/// Returns the gravity of the run, which combines its gravity effects with the point mass `mu` of the orbit's
-/// planet. Returns `None` if there are no gravity effects.
+/// Returns the gravity of the run: its gravity effects and the point mass of the planet, with the `mu` of the
+/// gravity field or, without a field, of the orbit, m³/s². Returns `None` if there are no gravity effects.
 pub(crate) fn gravity_of(
     py: Python<'_>,
     effects: &[Bound<'_, PyEffect>],

@@ -5,7 +5,7 @@ use crate::errors::{fields, raise};
 use onorbit_core::gravity::Luminary;
 use pyo3::prelude::*;
 
-/// Gravity of the Sun or the Moon, which accelerates both the robot and the reference.
+/// Gravity of the Sun or the Moon, as a perturbation of the motion around the Earth.
 ///
 /// The acceleration at the position ``r``, relative to that of the Earth's centre, is ``μ [(s - r)/|s - r|³ -
 /// s/|s|³]``. ``μ`` is the gravitational parameter of the third body and ``s`` its position; both positions

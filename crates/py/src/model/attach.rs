@@ -7,7 +7,7 @@ use crate::errors::{IntoPython, fields, plain, raise};
 use crate::pickling::{ConstructorCall, deep_copy};
 use nalgebra::Isometry3;
 use onorbit_core::model::Mount;
-use onorbit_core::number_text::short;
+use onorbit_core::number_text::exact;
 use onorbit_core::reference::Hold;
 use pyo3::prelude::*;
 use std::path::PathBuf;
@@ -33,7 +33,7 @@ use std::path::PathBuf;
 ///     Pose of the mounting frame relative to ``frame``, a homogeneous transform, m. Defaults to the
 ///     identity.
 /// prefix : str, optional
-///     Prefix for the names of all links, joints and frames of ``other``, such as ``"left_"``.
+///     Prefix for the names of all links, joints, frames and loops of ``other``, such as ``"left_"``.
 ///
 /// Returns
 /// -------
@@ -44,8 +44,8 @@ use std::path::PathBuf;
 /// FrameError
 ///     If a frame does not exist.
 /// ModelError
-///     If a link, joint or frame of one robot has the same name as one of the other, the pose is invalid, or
-///     the file of ``other`` does not describe a valid robot.
+///     If a link, joint, frame or loop of one robot has the same name as one of the other, the pose is
+///     invalid, or the file of ``other`` does not describe a valid robot.
 /// NotFoundError, ReadError
 ///     If the file of ``other`` does not exist or cannot be read.
 #[pyfunction]
@@ -99,8 +99,8 @@ pub(crate) fn isometry(pose: Any<'_, '_>) -> PyResult<Isometry3<f64>> {
     let rows = fixed::<16>(pose, "pose", &[4, 4])?;
     if let Some(entry) = rows.iter().find(|entry| entry.abs() > 1e12) {
         return Err(refuse(&format!(
-            "the pose holds {}; expected numbers between -1e12 and 1e12 m; check the units",
-            short(*entry)
+            "the pose holds {}; expected numbers between -1e12 and 1e12 (positions in m); check the units",
+            exact(*entry)
         )));
     }
     let poses = Hold::from_rows(&[rows]).map_err(|error| refuse(&error.to_string()))?;

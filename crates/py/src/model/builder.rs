@@ -210,7 +210,8 @@ impl PyModelBuilder {
     /// FrameError
     ///     If a frame does not exist.
     /// ModelError
-    ///     If another loop has this name, or both frames are the same.
+    ///     If the name is empty or that of another loop, both frames are the same, or the length is out of
+    ///     range.
     #[pyo3(signature = (r#loop))]
     fn close(&mut self, py: Python<'_>, r#loop: &PyLoop) -> PyResult<()> {
         self.builder.close(r#loop.closing.clone()).map_err(|error| error.into_python(py))?;

@@ -60,7 +60,8 @@ pub(super) fn with_convex_pieces(
         }
     }
     if !has_mesh {
-        return Err(failed("none of them is a mesh; omit 'pieces'".to_owned()));
+        let fault = if shapes.is_empty() { "the link has none" } else { "none of them is a mesh" };
+        return Err(failed(format!("{fault}; choose a link with a collision mesh, or omit the division")));
     }
     let new = old.with_collisions(link, shapes).map_err(|error| error.into_python(py))?;
     let call = ConstructorCall::new("Model.with_convex_pieces", (model, link, count), &fields!(py,))?;

@@ -50,15 +50,16 @@ pub(super) fn of_mesh(
     let hulls = divided(py, &solid, count, filename)?;
     let excess = solid.excess(&hulls);
     if excess > EXCESS {
-        warn(
-            py,
-            format!(
-                "the {} convex pieces of {filename} have {:.0} % more volume than the mesh, so they fill part \
-                 of its concavities; for a closer approximation, increase pieces, which is {count}",
-                hulls.len(),
-                100.0 * excess
-            ),
-        )?;
+        let subject = match hulls.len() {
+            1 => format!("the convex piece of the mesh '{filename}' has"),
+            several => format!("the {several} convex pieces of the mesh '{filename}' have"),
+        };
+        let message = format!(
+            "{subject} {:.0} % more volume than the mesh, which is filled in part where it is concave; for a closer \
+             approximation, increase 'pieces', which is {count}",
+            100.0 * excess
+        );
+        warn(py, message)?;
     }
     Ok(hulls.iter().map(Hull::geometry).collect())
 }

@@ -60,7 +60,8 @@ fn change_from_dict(link: &str, values: &Bound<'_, PyAny>) -> PyResult<LinkChang
     for key in values.keys() {
         if !["mass", "com", "inertia"].iter().any(|known| key.eq(known).unwrap_or(false)) {
             return refuse(&format!(
-                "links[{link:?}] has the unknown key {key}; the keys are mass, com and inertia"
+                "links[{link:?}] has the unknown key {}; the keys are mass, com and inertia",
+                key.repr()?
             ));
         }
     }

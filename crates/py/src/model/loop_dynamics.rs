@@ -40,7 +40,8 @@ impl PyModel {
     /// FrameError
     ///     If a frame does not exist.
     /// ModelError
-    ///     If both frames of a loop are on the same body, or a name is already used.
+    ///     If a loop is invalid, for example because both of its frames are on the same body or its name is
+    ///     already used.
     #[pyo3(signature = (loops))]
     fn with_loops(slf: &Bound<'_, Self>, loops: Any<'_, '_>) -> PyResult<Self> {
         with_loops(slf, loops_in(loops)?)
@@ -82,8 +83,7 @@ impl PyModel {
     /// Raises
     /// ------
     /// FrameError, ModelError
-    ///     If a frame of ``loops`` does not exist, both frames of a loop are on one body, or a name is
-    ///     already used.
+    ///     If a frame of ``loops`` does not exist, or a loop is invalid, as for :meth:`with_loops`.
     /// ShapeError
     ///     If an array has the wrong shape.
     #[pyo3(signature = (q, v, tau, loops=None, *, external=None, threads=None))]

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use std::sync::Arc;
 
-/// Path through given positions with continuous acceleration.
+/// Path with continuous acceleration through given positions.
 ///
 /// Parameters
 /// ----------

@@ -1,4 +1,4 @@
-//! Reference orbit at rest.
+//! Fixed point that serves as the reference orbit.
 
 use super::{Any, PyOrbit, base};
 use crate::arrays::{array_of, fixed};
@@ -10,11 +10,11 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use std::sync::Arc;
 
-/// Reference orbit at rest in inertial axes.
+/// Fixed point in inertial axes, which serves as the reference orbit.
 ///
-/// The reference has no local orbital frame: :meth:`lvlh` raises ``OrbitError``, and :meth:`frame` returns
-/// the attitude. With ``mu``, the robot falls away from the reference, unless the gravity mode of the
-/// simulation is ``carried``.
+/// The point has no local orbital frame: :meth:`lvlh` raises ``OrbitError``, and :meth:`frame` returns the
+/// attitude. With ``mu``, the robot falls away from the point, unless the gravity mode of the simulation is
+/// ``carried``.
 ///
 /// Parameters
 /// ----------

@@ -58,7 +58,8 @@ pub(super) struct PyKepler {
     flattening: Flattening,
 }
 
-/// Returns J2 and the reference radius for the secular rates; by default, the values of the Earth.
+/// Returns J2 and the reference radius, m, for the secular rates; by default, the values of the Earth. The
+/// result is `None` without secular rates; `j2` or `radius` is then an error.
 fn flattening(
     py: Python<'_>,
     secular_j2: bool,

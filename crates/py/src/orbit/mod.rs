@@ -128,8 +128,7 @@ impl PyOrbit {
     /// Raises
     /// ------
     /// OrbitError
-    ///     If the reference is at rest or moves along its position vector, or for the reasons stated for
-    ///     :meth:`state`.
+    ///     If the velocity is zero or parallel to the position, or for the reasons stated for :meth:`state`.
     fn lvlh<'py>(
         &self,
         py: Python<'py>,
@@ -138,9 +137,10 @@ impl PyOrbit {
         self.frames(py, t, lvlh_frames)
     }
 
-    /// Return attitude and angular velocity of the frame that moves along the reference.
+    /// Return attitude and angular velocity of the frame that moves along the orbit.
     ///
-    /// This is the attitude given with a path or a fixed frame, or else the local orbital frame.
+    /// The frame has the attitude given with a path or a fixed frame; without one, it is the local orbital
+    /// frame.
     ///
     /// Parameters
     /// ----------

@@ -10,7 +10,7 @@ use onorbit_core::reference::{MovingFrame, ReferenceFrame, Target};
 use pyo3::prelude::*;
 use std::sync::Arc;
 
-/// Spacecraft without forces that moves and rotates uniformly in W, and defines a frame for references.
+/// Frame for references that moves with constant velocity and constant angular velocity in W.
 ///
 /// Parameters
 /// ----------
@@ -132,7 +132,8 @@ pub(crate) fn moving_frame(
     let Some(system) = systems.iter().position(|(known, _)| known == name) else {
         let known: Vec<&str> = systems.iter().map(|(name, _)| name.as_str()).collect();
         let reason = if known.is_empty() {
-            "the run has only one robot; give 'world', 'lvlh', 'base' or a Target".to_owned()
+            "the run has only one robot; simulate a World that contains this system, or use no other system"
+                .to_owned()
         } else {
             format!("no system of the world is named '{name}'; the systems are: {}", known.join(", "))
         };

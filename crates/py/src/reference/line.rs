@@ -5,7 +5,7 @@ use crate::pickling::call_of;
 use onorbit_core::reference::{Line, TimeLaw, Timing};
 use pyo3::prelude::*;
 
-/// Straight line from rest to rest. The attitude changes by a rotation about a fixed axis, the shortest one.
+/// Straight line from rest to rest. The attitude changes by the shortest rotation, about a fixed axis.
 ///
 /// Parameters
 /// ----------

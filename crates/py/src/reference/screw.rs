@@ -21,7 +21,7 @@ use pyo3::prelude::*;
 ///     If True, the attitude rotates with the position; otherwise it is constant.
 /// ramp : float, optional
 ///     If given, the rate is constant between two ramps, each of which takes this fraction of the duration;
-///     otherwise the angle is a quintic of time.
+///     otherwise the angle is a quintic polynomial of time.
 /// duration, speed, acceleration, angular_speed, angular_acceleration : float, optional
 ///     Duration or limits, as for :class:`Line`.
 /// frame : {"world", "lvlh", "base"} or Target, optional

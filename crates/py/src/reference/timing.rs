@@ -3,8 +3,8 @@
 use super::Any;
 use super::row;
 use crate::arrays::{Input, wrong_shape};
-use crate::errors::{IntoPython, plain};
-use onorbit_core::reference::{RateLimit, ReferenceError, TaskLimits, Timing};
+use crate::errors::plain;
+use onorbit_core::reference::{RateLimit, TaskLimits, Timing};
 use pyo3::prelude::*;
 
 /// Reads either a duration or times, or the limits of a tool's motion: speed, acceleration, angular speed and
@@ -24,7 +24,7 @@ pub(super) fn of_task<T>(
             angular: RateLimit { rate: angular_rate, acceleration: angular_acceleration },
         })),
         Some(_) => Err(both(py)),
-        None => Err(ReferenceError::NoLimit.into_python(py)),
+        None => Err(neither(py)),
     }
 }
 
@@ -49,7 +49,7 @@ pub(super) fn of_joints(
             Ok(Timing::Limits(limits.map(|(rate, acceleration)| RateLimit { rate, acceleration }).collect()))
         }
         (Some(_), true) => Err(both(py)),
-        (None, false) => Err(ReferenceError::NoLimit.into_python(py)),
+        (None, false) => Err(neither(py)),
     }
 }
 
@@ -65,7 +65,16 @@ fn per_joint(value: Any<'_, '_>, name: &str, count: usize) -> PyResult<Vec<f64>>
     }
 }
 
+/// Returns the error for a reference with neither times nor limits.
+fn neither(py: Python<'_>) -> PyErr {
+    plain(
+        py,
+        "ControlError",
+        "the reference has neither times (or a duration) nor limits; give one of the two",
+    )
+}
+
 /// Returns the error for a reference with both times and limits.
 fn both(py: Python<'_>) -> PyErr {
-    plain(py, "ControlError", "times (or a duration) and limits are both given; omit one of the two")
+    plain(py, "ControlError", "the reference has both times (or a duration) and limits; omit one of the two")
 }

@@ -47,7 +47,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 ///     Behaviour for a reference orbit that is not in free fall. ``true``: the robot falls in the modelled
 ///     gravity and therefore moves away from the reference. ``carried``: the robot moves along with the
 ///     reference; only tidal gravity acts, and drag and radiation pressure act without their common
-///     acceleration. ``trace.reference_residual`` is the gravitational acceleration that is omitted.
+///     acceleration. ``trace.reference_residual`` is the omitted difference between the acceleration of
+///     gravity and that of the reference.
 /// environment : list of Effect, optional
 ///     Effects on the bodies, such as ``GravityGradient()`` and ``Drag``.
 /// controller : control law, object or list of Control, optional
@@ -79,8 +80,9 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 ///     If True, ``trace.wrenches`` contains the wrench of every effect on every body.
 /// rereference_beyond : float
 ///     Distance of the base from the reference orbit, m, beyond which integration continues about a new,
-///     freely falling reference orbit, unless a controller tracks a pose in W. ``trace.rereferenced``
-///     contains the times of these changes; recorded quantities still refer to W.
+///     freely falling reference orbit. The reference orbit is kept without a planet, if ``gravity_mode`` is
+///     ``carried``, and with a reference of the tool or a Python controller. ``trace.rereferenced`` contains
+///     the times of these changes; recorded quantities still refer to W.
 /// actuators : list of Brake, optional
 ///     Brakes of joints. Only events of a :class:`World` engage and disengage them during a run.
 /// engine : object, optional
@@ -94,9 +96,9 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 ///     a robot is given with a world.
 /// InputError, ShapeError
 ///     If a number is out of range, or an array has the wrong shape.
-/// OrbitError, EarthError, GravityError, EffectError, ControlError, EngineError
-///     If the orbit, the Earth, the environment, a controller or the engine is invalid, or lacks something
-///     that another argument requires.
+/// OrbitError, EarthError, GravityError, EffectError, ControlError, FrameError, WorldError, EngineError
+///     If the orbit, the Earth, the environment, a controller, the tool, a brake or the engine is invalid, or
+///     lacks something that another argument requires.
 ///
 /// Notes
 /// -----
@@ -115,11 +117,11 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// lists the rigid connections during the step. Each consists of ``(system, body)`` of the capturing side and
 /// of the captured side, by index; the origin of the captured frame in the axes of each body, (2, 3), m; and
 /// the rotation from axes of the second body to axes of the first, (3, 3). The method returns a tuple: ``q``,
-/// ``v`` and the acceleration; for each system the impulse (systems, 6), the work (systems,) and the loss
-/// (systems,) as above; the impulse (systems, 6) and the work (systems,) of the connections on each system;
-/// and the time integral of the moments of the external forces about the common centre of mass, with each
-/// force acting at the centre of mass of its system, (3,), W axes, N m s. With such an engine, captures cause
-/// no impact: the engine removes the relative velocity during the next steps.
+/// ``v`` and the acceleration; for each system the impulse (systems, 6), the work (systems,) and the
+/// dissipated energy (systems,) as above; the impulse (systems, 6) and the work (systems,) of the connections
+/// on each system; and the time integral of the moments of the external forces about the common centre of
+/// mass, with each force acting at the centre of mass of its system, (3,), W axes, N m s. With such an
+/// engine, captures cause no impact: the engine removes the relative velocity during the next steps.
 ///
 /// The attribute ``contacts`` of an engine lists the names of the contacts whose forces the engine computes.
 /// It includes their impulse and work in those of the connections, and ``step_world`` returns a tenth entry,
@@ -313,8 +315,8 @@ impl PySimulation {
     /// SimulationError
     ///     If the run diverges; its attribute ``trace`` contains the rows so far.
     /// InputError, CheckpointError
-    ///     If ``duration`` or ``checkpoint_every`` is invalid, or ``resume`` belongs to a different
-    ///     simulation.
+    ///     If ``duration`` or ``checkpoint_every`` is invalid, or if ``resume`` is damaged, lacks rows or
+    ///     belongs to a different simulation or version.
     #[pyo3(signature = (duration, *, progress=None, checkpoint=None, checkpoint_every=30.0, resume=None))]
     fn run(
         &self,
@@ -372,7 +374,7 @@ impl PySimulation {
     /// InputError
     ///     If the duration is not positive and finite.
     /// CheckpointError
-    ///     If the checkpoint belongs to a different simulation.
+    ///     If ``resume`` is damaged, lacks rows or belongs to a different simulation or version.
     #[pyo3(signature = (*, duration=None, resume=None, streamed=false))]
     fn start(
         &self,

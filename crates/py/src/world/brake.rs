@@ -5,7 +5,7 @@ use crate::arrays::{list_of, text};
 use crate::errors::{fields, raise};
 use crate::pickling::{ConstructorCall, Reduced};
 use onorbit_core::model::Model;
-use onorbit_core::number_text::short;
+use onorbit_core::number_text::{names, short};
 use onorbit_core::world::{Brake, BrakeIndex};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -27,6 +27,11 @@ use pyo3::types::PyDict;
 ///     Largest torque that the brake holds, N m (N for a prismatic joint); positive, and may be infinite.
 /// engaged : bool
 ///     If True, the brake is engaged at the start of the run.
+///
+/// Raises
+/// ------
+/// InputError, DtypeError
+///     If the slip torque is not positive, or a name is not text.
 #[pyclass(name = "Brake", frozen, module = "onorbit_rs")]
 pub(crate) struct PyBrake {
     /// Name of the brake.
@@ -118,18 +123,21 @@ pub(super) fn brake_at(
     };
     let Some(system) = systems.iter().position(|(known, _)| known == name) else {
         let known: Vec<&str> = systems.iter().map(|(name, _)| name.as_str()).collect();
-        return Err(wrong(&format!("there is no system '{name}'; the systems are: {}", known.join(", "))));
+        return Err(wrong(&format!("there is no system '{name}'; {}", names(&known, "system"))));
     };
     let known = &systems[system].1;
     match known.iter().position(|name| name == brake) {
         Some(brake) => Ok(BrakeIndex { system, brake }),
-        None if known.is_empty() => {
-            Err(wrong(&format!("the system '{name}' has no brakes; add the brake to its actuators")))
-        }
-        None => Err(wrong(&format!(
-            "there is no brake '{brake}'; the brakes of the system '{name}' are: {}",
-            known.join(", ")
+        None if known.is_empty() => Err(wrong(&format!(
+            "the system '{name}' has no brakes; give the brake to 'actuators' of the system"
         ))),
+        None => {
+            let known = match &known[..] {
+                [only] => format!("the only brake of the system '{name}' is '{only}'"),
+                _ => format!("the brakes of the system '{name}' are: {}", known.join(", ")),
+            };
+            Err(wrong(&format!("there is no brake '{brake}'; {known}")))
+        }
     }
 }
 
@@ -198,15 +206,21 @@ brake_event! {
     /// name : str
     ///     Name of the event.
     /// brake : str
-    ///     Brake as ``SYSTEM/BRAKE``.
+    ///     Path of the brake, ``SYSTEM/BRAKE``.
     /// at : float, optional
     ///     Simulation time of the event, s.
     /// after : str, optional
     ///     Name of another event, after which this event happens.
     /// delay : float
-    ///     Time after the other event, s.
+    ///     Time from the other event to this event, s; only with ``after``.
     /// on_command : bool
     ///     If True, the event happens when ``Stepper.trigger`` is called.
+    ///
+    /// Raises
+    /// ------
+    /// WorldError, DtypeError
+    ///     If not exactly one condition is given, ``delay`` is given without ``after``, or a name is not
+    ///     text.
     PyEngage, "Engage", "engages"
 }
 
@@ -221,14 +235,20 @@ brake_event! {
     /// name : str
     ///     Name of the event.
     /// brake : str
-    ///     Brake as ``SYSTEM/BRAKE``.
+    ///     Path of the brake, ``SYSTEM/BRAKE``.
     /// at : float, optional
     ///     Simulation time of the event, s.
     /// after : str, optional
     ///     Name of another event, after which this event happens.
     /// delay : float
-    ///     Time after the other event, s.
+    ///     Time from the other event to this event, s; only with ``after``.
     /// on_command : bool
     ///     If True, the event happens when ``Stepper.trigger`` is called.
+    ///
+    /// Raises
+    /// ------
+    /// WorldError, DtypeError
+    ///     If not exactly one condition is given, ``delay`` is given without ``after``, or a name is not
+    ///     text.
     PyDisengage, "Disengage", "disengages"
 }

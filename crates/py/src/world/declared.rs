@@ -44,7 +44,8 @@ use std::sync::Arc;
 ///     Events that connect and separate systems, or engage and disengage brakes.
 /// rereference_beyond : float
 ///     Distance of a system from the reference orbit, m, beyond which integration continues about a new
-///     reference orbit. Systems that events may connect, or that may touch, keep their reference orbit.
+///     reference orbit. Systems that may interact, for example because events may connect them or because
+///     they may touch, keep their reference orbit.
 /// loops : list of Loop, optional
 ///     Closed loops of the robots; both frames of a loop are ``SYSTEM/FRAME`` of the same system.
 ///
@@ -244,9 +245,10 @@ fn warn_of_pairs(py: Python<'_>, simulation: &Simulation) -> PyResult<()> {
     };
     let [a, b] = [0, 1].map(|side| most.sides[side].len());
     let message = format!(
-        "the contacts have {total} pairs of convex pieces, most of them in '{}' ({a} pieces with {b}); each \
-         pair needs about 3 kB of memory, and pairs near each other are evaluated in every step; narrow the \
-         patterns to the links that can touch, such as SYSTEM/gripper* instead of SYSTEM/*",
+        "the contacts have {total} pairs of convex pieces; the contact with the most pairs is '{}', whose \
+         sides have {a} and {b} pieces; each pair needs about 3 kB of memory, and pairs near each other are \
+         evaluated in every step; narrow the patterns to the links that can touch, such as SYSTEM/gripper* \
+         instead of SYSTEM/*",
         most.name
     );
     PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(message)?, 1)
@@ -256,11 +258,8 @@ fn warn_of_pairs(py: Python<'_>, simulation: &Simulation) -> PyResult<()> {
 /// precision.
 fn warn_of_distance(py: Python<'_>, simulation: &Simulation) -> PyResult<()> {
     for far in simulation.far_systems() {
-        let reason = if far.keeps_reference {
-            "; systems that events may connect keep this reference orbit"
-        } else {
-            ""
-        };
+        let reason =
+            if far.keeps_reference { "; systems that may interact keep this reference orbit" } else { "" };
         let message = format!(
             "system '{}' starts {} m from the reference orbit, where positions are resolved to {} m{reason}; \
              use a reference orbit near the systems",

@@ -6,6 +6,7 @@ use crate::errors::{IntoPython, fields, raise};
 use crate::model::attach::isometry;
 use crate::pickling::{ConstructorCall, Reduced, deep_copy};
 use onorbit_core::model::Model;
+use onorbit_core::number_text::names;
 use onorbit_core::world::{Action, Envelope, Event, FrameIndex, Seat, When};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -103,7 +104,7 @@ fn frame_at(
     };
     let Some(system) = systems.iter().position(|(known, _)| known == name) else {
         let known: Vec<&str> = systems.iter().map(|(name, _)| name.as_str()).collect();
-        return Err(wrong(&format!("there is no system '{name}'; the systems are: {}", known.join(", "))));
+        return Err(wrong(&format!("there is no system '{name}'; {}", names(&known, "system"))));
     };
     let frame = systems[system].1.frame(frame).map_err(|error| error.into_python(py))?;
     Ok(FrameIndex { system, frame })

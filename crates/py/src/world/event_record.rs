@@ -28,9 +28,10 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 /// impulse : (6,) array
 ///     Impulse on the second system and the systems connected to it: linear, N s, then angular about
 ///     ``point``, N m s, axes of W. For a lift-off, the impulse of the contact since its touch-down; for a
-///     touch-down, zero.
+///     touch-down, zero. For a brake, the impulse with which it stops the link that the joint moves.
 /// point : (3,) array
-///     Point at which the impulse acts, in W, m; for a contact, the point of contact.
+///     Point at which the impulse acts, in W, m: for a contact, the point of contact; for a brake, the origin
+///     of the link that the joint moves.
 /// energy_lost : float
 ///     Kinetic energy lost, J; negative if a spring added energy. For a lift-off, the energy dissipated since
 ///     the touch-down.
@@ -63,7 +64,8 @@ pub(crate) struct PyEventRecord {
     systems: (String, String),
     impulse: [f64; 6],
     point: [f64; 3],
-    /// Kinetic energy lost, J; negative if a spring added energy.
+    /// Kinetic energy lost, J; negative if a spring added energy. For a lift-off, the energy dissipated since
+    /// the touch-down.
     #[pyo3(get)]
     energy_lost: f64,
     momentum_error: [f64; 2],
@@ -126,7 +128,8 @@ impl PyEventRecord {
     }
 
     /// Impulse on the second system and the systems connected to it, (6,): linear, N s, then angular about
-    /// ``point``, N m s, axes of W.
+    /// ``point``, N m s, axes of W. For a lift-off, the impulse of the contact since its touch-down; for a
+    /// brake, the impulse with which it stops the link that the joint moves.
     #[getter]
     fn impulse<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
         array_of(py, &[6], &self.impulse)

@@ -3,6 +3,7 @@
 use super::system::PySystem;
 use crate::errors::{fields, raise};
 use onorbit_core::model::Loop;
+use onorbit_core::number_text;
 use pyo3::prelude::*;
 
 /// Returns the systems after each loop has been added to the robot of its system. The frames of the loops are
@@ -41,10 +42,8 @@ fn of_one_system(py: Python<'_>, given: &Loop, names: &[&str]) -> PyResult<(usiz
             )));
         };
         let number = names.iter().position(|known| *known == system).ok_or_else(|| {
-            let known = names.join(", ");
-            refuse(&format!(
-                "refers to the frame '{path}', but there is no system '{system}'; the systems are: {known}"
-            ))
+            let known = number_text::names(names, "system");
+            refuse(&format!("refers to the frame '{path}', but there is no system '{system}'; {known}"))
         })?;
         Ok((number, frame.to_owned()))
     };

@@ -25,8 +25,8 @@ pub(crate) struct RobotSettings {
 }
 
 impl RobotSettings {
-    /// Sets controls, reference, tool, stops and actuators of `system`. References and controls may refer to
-    /// the objects in `around`.
+    /// Sets controls, control period, reference with its start tolerance, tool, stops and brakes of `system`.
+    /// References and controls may refer to the objects in `around`.
     pub(crate) fn apply(
         &self,
         py: Python<'_>,

@@ -55,9 +55,9 @@ use std::sync::Arc;
 ///
 /// Raises
 /// ------
-/// ShapeError, DtypeError, EffectError
-///     If ``q`` or ``v`` is not a vector, ``knows`` is not a list of names, or ``surfaces`` is invalid. Other
-///     invalid arguments raise an error when the ``World`` is constructed.
+/// ShapeError, DtypeError, EffectError, ModelError, FrameError
+///     If ``q`` or ``v`` is not a vector, ``knows`` is not a list of names, or ``surfaces`` or ``loops`` is
+///     invalid. Other invalid arguments raise an error when the ``World`` is constructed.
 #[pyclass(name = "System", frozen, module = "onorbit_rs")]
 pub(crate) struct PySystem {
     /// Name of the system.

@@ -22,8 +22,8 @@ pub(super) fn find(py: Python<'_>, names: &[String], name: &str) -> PyResult<usi
     })
 }
 
-/// Returns the error for an attribute that each system has, but not the `owner`, the stepper or trace of a
-/// world of several systems.
+/// Returns the error for an attribute that the `owner` (the stepper or the trace of a world of several
+/// systems) does not have, but that the steppers or traces of its systems have.
 pub(super) fn attribute_of_systems(names: &[String], owner: &str, attribute: &str) -> PyErr {
     let examples: Vec<String> = names.iter().map(|name| format!("{owner}[\"{name}\"].{attribute}")).collect();
     PyAttributeError::new_err(format!(
@@ -60,8 +60,8 @@ impl Systems {
         stepper.events().into_iter().map(|record| PyEventRecord::of(record, &self.names)).collect()
     }
 
-    /// Returns an error if there are several systems, because each of them then has the `attribute` instead
-    /// of `owner`, the stepper or trace.
+    /// Returns an error if there are several systems. The `owner`, a stepper or a trace, then does not have
+    /// the `attribute`; the steppers or traces of the systems have it.
     pub(crate) fn only(&self, owner: &str, attribute: &str) -> PyResult<()> {
         if self.names.len() == 1 {
             return Ok(());
@@ -133,7 +133,7 @@ impl PySystemStepper {
     /// InputError
     ///     If a torque is not finite, or a name is not that of a joint.
     /// ControlError
-    ///     If an active controller drives one of the joints.
+    ///     If a torque is given for a joint that has an active controller.
     fn command(&self, tau: &Bound<'_, PyAny>) -> PyResult<()> {
         self.stepper.get().command_system(self.system, tau)
     }
@@ -212,7 +212,7 @@ impl PySystemStepper {
         self.stepper.get().send_trajectory_to(py, self.system, control, path, [velocities, accelerations])
     }
 
-    /// Apply a wrench to a body of this system until the next wrench on it; see :meth:`Stepper.wrench`.
+    /// Apply a wrench to a link or frame of this system; see :meth:`Stepper.wrench`.
     ///
     /// Parameters
     /// ----------

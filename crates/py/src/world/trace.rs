@@ -15,10 +15,11 @@ use std::sync::OnceLock;
 /// Result of a run of a world: the traces of its systems, its events, and its momentum and energy.
 ///
 /// ``trace["chaser"]`` is the :class:`Trace` of a system, with all of its rows. The columns of the world have
-/// only the rows at times that all systems recorded. Systems that events may connect form a group and have
-/// the same rows. Systems of different groups share the multiples of ``record_every`` steps and the end of
-/// the run, but the rows at events, impacts and control ticks are those of one group. If only some systems
-/// have a row both before and after an event, the row of the world is the one after the event.
+/// only the rows at times that all systems recorded. Systems that may interact, for example because events
+/// may connect them or because they may touch, form a group and have the same rows. Systems of different
+/// groups share the multiples of ``record_every`` steps and the end of the run, but the rows at events,
+/// impacts and control ticks are those of one group. If only some systems have a row both before and after an
+/// event, the row of the world is the one after the event.
 #[pyclass(name = "WorldTrace", frozen, module = "onorbit_rs")]
 pub(crate) struct PyWorldTrace {
     names: Vec<String>,
@@ -95,8 +96,8 @@ impl PyWorldTrace {
         self.records.iter().map(|record| PyEventRecord::of(record, &self.names)).collect()
     }
 
-    /// Distances and forces of the contacts, :class:`ContactTrace` by the name of the contact. Their rows are
-    /// those of the trace of the system that is the first side of the contact.
+    /// Distances and forces of the contacts: one :class:`ContactTrace` by the name of each contact. Its rows
+    /// are those of the trace of the system that is the first side of the contact.
     #[getter]
     fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let all = PyDict::new(py);

@@ -89,22 +89,23 @@ def _checked(law: Any, reference: Any, tool: str | None, scenario: Scenario, at:
         if is_task:
             raise inconsistent(
                 (*at, "reference"),
-                f"the reference {reference.kind} moves a tool, but {kind} controls joints; use a joint "
-                "reference (joint_hold, joint_waypoints, joint_ramps, joint_sampled, bag), or the controller "
-                "computed_torque",
+                f"the reference {reference.kind} is for a tool, but the controller {kind} accepts only joint "
+                "references; use a joint reference (joint_hold, joint_waypoints, joint_ramps, joint_sampled, "
+                "bag), or the controller computed_torque",
             )
         if reference is None and getattr(law, "interface", None) == "effort":
             raise inconsistent(
                 (*at, "reference"),
-                "interface effort requires a reference that contains the efforts; use joint_sampled or "
-                "joint_hold",
+                "with interface effort, the values of the reference are efforts, so a reference is required; "
+                "use joint_sampled or joint_hold",
             )
         return reference or JointHoldReference()
     if reference is not None and not is_task:
         raise inconsistent(
             (*at, "reference"),
-            f"the reference {reference.kind} moves joints, but {kind} controls a tool; use a reference of a "
-            "tool (hold, line, waypoints, ...), or the controller joint_computed_torque",
+            f"the reference {reference.kind} is for joints, but the controller {kind} accepts only tool "
+            "references; use a tool reference (hold, line, waypoints, ...), or the controller "
+            "joint_computed_torque",
         )
     if isinstance(law, TaskLaw) and reference is None:
         reference = HoldReference()

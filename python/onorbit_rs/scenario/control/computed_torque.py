@@ -15,7 +15,7 @@ from onorbit_rs.scenario.fields import NotNegative, Number, Rate
 
 
 class ComputedTorqueController(TaskLaw):
-    """Computed torque in task space, Eq. (6)-(8) of the OnOrbitROS paper with the exact drift."""
+    """Computed torque in task space, Eq. (6)-(8) of the OnOrbitROS paper, with the exact drift term."""
 
     kind: Literal["computed_torque"] = "computed_torque"
     kp: StiffnessGain = 100.0

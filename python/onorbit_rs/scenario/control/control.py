@@ -23,7 +23,7 @@ class TaskGoal(Part):
     path_tolerance: TaskTolerance | None = None
     """Tolerance before the end of the reference; if it is exceeded, the control stops and holds the tool."""
     time: Annotated[Time, NotNegative] | None = None
-    """Time allowed after the end of the reference. Default: unlimited."""
+    """Time, s, allowed after the end of the reference. Default: unlimited."""
 
 
 class JointGoal(Part):
@@ -35,7 +35,7 @@ class JointGoal(Part):
     """Tolerance before the end of the reference; if it is exceeded, the control stops and holds the
     joints."""
     time: Annotated[Time, NotNegative] | None = None
-    """Time allowed after the end of the reference. Default: unlimited."""
+    """Time, s, allowed after the end of the reference. Default: unlimited."""
 
 
 def _as_list(value: Any) -> Any:
@@ -53,9 +53,9 @@ class Control(Part):
     """Reference of the control. Default: the tool or the joints are held at their initial pose or
     positions."""
     start: Annotated[Time, NotNegative] = 0.0
-    """Time at which the control starts."""
+    """Simulated time at which the control starts, s."""
     end: Annotated[Time, Positive] | None = None
-    """Time at which the control ends. Default: the end of the run."""
+    """Simulated time at which the control ends, s. Default: the end of the run."""
     after: str | None = None
     """Name of another control or an event. This control starts when the other control ends or its goal is
     decided, or when the event happens. A control that an event starts replaces the controls that drive its

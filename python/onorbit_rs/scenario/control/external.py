@@ -28,7 +28,7 @@ class ExternalController(JointLaw):
     kd: JointRateGain = 0.0
     """Gain of the rate errors, 1/s; required for commands of velocities, such as 20."""
     timeout: Annotated[Time, Positive] | None = None
-    """Time without a command after which ``on_timeout`` applies. Default: never."""
+    """Time without a command, s, after which ``on_timeout`` applies. Default: never."""
     on_timeout: Literal["hold", "damp", "zero"] = "hold"
     """Behaviour after a timeout: ``hold`` keeps the positions, ``damp`` brings the joints to rest with
     ``kd``, and ``zero`` sets zero torques."""

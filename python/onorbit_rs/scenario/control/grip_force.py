@@ -25,13 +25,13 @@ class GripForceController(Law):
 
     kind: Literal["grip_force"] = "grip_force"
     force: Annotated[Force, Positive]
-    """Desired mean of the normal forces of the fingers."""
+    """Desired mean of the normal forces of the fingers, N."""
     closing_rate: JointRates
     """Rate of the joints until all fingers touch, rad/s or m/s; the sign is that of the closing motion."""
     damping: JointNumber
     """Damping of the joints, N m s/rad, or N s/m for prismatic joints."""
     ramp: Annotated[Time, NotNegative] = 0.5
-    """Time in which the desired force increases from zero to ``force``."""
+    """Time, s, in which the desired force increases from zero to ``force``."""
     integral: Annotated[Rate, NotNegative] = 5.0
     """Gain of the integral of the force error, 1/s."""
     stiffness: JointNumber = 0.0
@@ -65,9 +65,9 @@ class ForceGoal(Part):
     """Goal of a grip: the force must be within a tolerance after the end of the ramp."""
 
     tolerance: Annotated[Force, Positive]
-    """Largest difference between the force of the grip and the desired force."""
+    """Largest difference between the force of the grip and the desired force, N."""
     time: Annotated[Time, NotNegative] | None = None
-    """Time allowed after the start of the control. Default: unlimited."""
+    """Time, s, allowed after the start of the control. Default: unlimited."""
 
 
 class GripForceControl(GripForceController, Control):

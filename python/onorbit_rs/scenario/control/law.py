@@ -41,7 +41,7 @@ class Law(Part, ABC):
         """
 
     def sampled_gains(self, mobility: InitialMobility) -> Iterator[SampledGain]:
-        """Yield the gains with which errors grow if the control period is too long.
+        """Yield the gains with which errors grow if the control period is too long; by default none.
 
         Parameters
         ----------

@@ -27,9 +27,9 @@ def check_load(load: str | None, neighbours: Mapping[str, Neighbour]) -> None:
     wrong = system if system not in neighbours else frame
     if wrong not in names:
         what = "system" if system not in neighbours else f"frame of {system}"
+        why = f"no {what} is named {wrong!r}" if wrong else f"the {what} is missing"
         raise FrameError(
-            f"{load!r} is not SYSTEM/FRAME of another system: no {what} is named {wrong!r}"
-            f"{did_you_mean(wrong, list(names))}",
+            f"{load!r} is not SYSTEM/FRAME of another system: {why}{did_you_mean(wrong, list(names))}",
             name=wrong, kind="frame", known=list(names), suggestion=nearest(wrong, list(names)),
         )  # fmt: skip
 

@@ -42,7 +42,7 @@ class ExponentialAir(Part):
 
 
 class HarrisPriesterAir(Part):
-    """Harris-Priester model with a diurnal bulge; requires an epoch."""
+    """Harris-Priester model with a diurnal bulge. It requires an epoch."""
 
     kind: Literal["harris_priester"] = "harris_priester"
     exponent: Number = 4.0
@@ -70,7 +70,7 @@ GeomagneticIndex = Annotated[float | list[float], BeforeValidator(_ap)]
 
 
 class Nrlmsise00Air(Part):
-    """NRLMSISE-00 model with constant indices or with a table of indices; requires an epoch."""
+    """NRLMSISE-00 model with constant indices or with a table of indices. It requires an epoch."""
 
     kind: Literal["nrlmsise00"] = "nrlmsise00"
     f107: Number | None = None
@@ -79,7 +79,7 @@ class Nrlmsise00Air(Part):
     """Geomagnetic index ap: the daily value, or the seven values of NRLMSISE-00, which are the daily value
     and values of the preceding hours."""
     table: FilePath | None = None
-    """CSV file with the indices, relative to the scenario."""
+    """CSV file with the indices; a relative path starts at the folder of the scenario."""
     three_hourly: bool = True
 
     def build(self, folder: Path) -> _core.Atmosphere:

@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from onorbit_rs import _core
+from onorbit_rs.common.numbers import shortest
 from onorbit_rs.common.suggestions import did_you_mean, nearest
 from onorbit_rs.exceptions import FrameError
 from onorbit_rs.scenario.environment.paths import split_link
@@ -28,12 +29,14 @@ class BodyWrenchEffect(Part):
     torque: Torque3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
     start: Time = 0.0
     end: Time | None = None
-    """Time at which the wrench ends. Default: the end of the run."""
+    """Simulated time at which the wrench ends, s. Default: the end of the run."""
 
     @model_validator(mode="after")
     def _ends_after_start(self) -> BodyWrenchEffect:
         if self.end is not None and self.end <= self.start:
-            raise invalid(f"end is {self.end:g} s; it must be later than start, {self.start:g} s")
+            raise invalid(
+                f"end is {shortest(self.end)} s; it must be later than start, {shortest(self.start)} s"
+            )
         return self
 
     @property

@@ -54,7 +54,7 @@ class EarthPart(Part):
                 raise invalid(f"{key} applies only to rotation: {other}; omit {key}, or set that rotation")
         if self.eop is not None and (self.ut1_minus_utc is not None or self.polar_motion is not None):
             raise invalid(
-                "eop is given together with ut1_minus_utc or polar_motion, which the file of eop already "
+                "eop is given together with ut1_minus_utc or polar_motion, which the EOP file already "
                 "contains; omit eop, or omit the other keys"
             )
         return self

@@ -10,7 +10,7 @@ from onorbit_rs.scenario.part import Part
 
 
 class GravityGradientEffect(Part):
-    """Gravity-gradient torque on every body about its centre of mass; requires an orbit."""
+    """Gravity-gradient torque on every body about its centre of mass. It requires an orbit."""
 
     kind: Literal["gravity_gradient"] = "gravity_gradient"
 

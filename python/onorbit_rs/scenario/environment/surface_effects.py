@@ -54,7 +54,7 @@ class SurfaceEffect(Part):
         return [(("bodies", path), path) for path in self.bodies or {}]
 
     def of_system(self, name: str, systems: Collection[str]) -> Self | None:
-        """Return the effect on the system ``name``, with the names of its links; None if there is none."""
+        """Return the effect on the system ``name`` alone; None if it acts only on other systems."""
         if self.bodies is None:
             return self
         own = {}
@@ -68,7 +68,7 @@ class SurfaceEffect(Part):
 
 
 class DragEffect(SurfaceEffect):
-    """Drag in an atmosphere that rotates with the Earth; requires an orbit and an epoch or ``earth``."""
+    """Drag in an atmosphere that rotates with the Earth. It requires an orbit and an epoch or ``earth``."""
 
     kind: Literal["drag"] = "drag"
     atmosphere: Air = Field(default_factory=ExponentialAir)
@@ -79,7 +79,7 @@ class DragEffect(SurfaceEffect):
 
 
 class RadiationPressureEffect(SurfaceEffect):
-    """Solar radiation pressure; requires an orbit and an epoch."""
+    """Solar radiation pressure, which requires an orbit and an epoch."""
 
     kind: Literal["radiation_pressure"] = "radiation_pressure"
     flux: Annotated[Flux, NotNegative] = 1361.0

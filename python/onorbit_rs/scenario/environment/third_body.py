@@ -10,7 +10,10 @@ from onorbit_rs.scenario.part import Part
 
 
 class ThirdBodyEffect(Part):
-    """Gravity of the Sun or the Moon on the robot and its reference orbit; requires an orbit and an epoch."""
+    """Gravity of the Sun or the Moon, as a perturbation of the motion around the Earth.
+
+    It requires an orbit and an epoch.
+    """
 
     kind: Literal["third_body"] = "third_body"
     body: Literal["sun", "moon"]

@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import model_validator
 
 from onorbit_rs import _core
+from onorbit_rs.common.numbers import shortest
 from onorbit_rs.scenario.errors import invalid
 from onorbit_rs.scenario.fields import (
     Angle,
@@ -118,7 +119,9 @@ class ConicOrbit(Part):
             right = (
                 "positive below eccentricity 1" if e < 1.0 else "negative above eccentricity 1 (a hyperbola)"
             )
-            raise invalid(f"semi_major_axis {a:g} m contradicts eccentricity {e:g}; it must be {right}")
+            raise invalid(
+                f"semi_major_axis {shortest(a)} m contradicts eccentricity {shortest(e)}; it must be {right}"
+            )
 
 
 class KeplerOrbit(ConicOrbit):
@@ -128,7 +131,7 @@ class KeplerOrbit(ConicOrbit):
     secular_j2: bool | None = None
     j2: Number | None = None
     radius: Annotated[Length, Positive] | None = None
-    """Reference radius of ``j2``; the defaults of ``j2`` and ``radius`` are the Earth's values."""
+    """Reference radius of ``j2``, m; the defaults of ``j2`` and ``radius`` are the Earth's values."""
 
     @model_validator(mode="after")
     def _has_secular_j2(self) -> KeplerOrbit:

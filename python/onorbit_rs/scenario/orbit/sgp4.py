@@ -43,7 +43,7 @@ class Sgp4Orbit(Part):
     """Text of the two lines, optionally after a line with the name of the satellite."""
     tle_file: FilePath | None = None
     omm_file: FilePath | None = None
-    """A CCSDS Orbit Mean-Elements Message: JSON, XML, CSV or KVN."""
+    """File with a CCSDS Orbit Mean-Elements Message: JSON, XML, CSV or KVN."""
     satellite: SatelliteName | None = None
     """Name or catalogue number of the satellite, if ``tle``, ``tle_file`` or ``omm_file`` has several
     sets."""

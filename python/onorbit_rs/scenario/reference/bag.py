@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from decimal import Decimal
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -36,7 +37,7 @@ class BagReference(Part):
     """Mapping from joints in the bag to the joints of the robot that follow them. Default: every joint
     follows the joint of the same name."""
     start: Time = 0.0
-    """Time, from the start of the reference, at which the first message applies."""
+    """Time, s, from the start of the reference, at which the first message applies."""
 
     def build(self, at: Start) -> _core.JointSampled:
         """Return the engine's reference object, for the joints of the group."""
@@ -100,7 +101,7 @@ def _with(samples: Sequence[Sample], names: list[str]) -> list[Sample]:
         elif len(missing) < len(names):
             raise _BadRecordingError(
                 f"message {number} lacks {', '.join(missing)}; each message must contain all followed joints "
-                "or none; omit the missing joints from 'joints'"
+                "or none; list in 'joints' only joints that are always recorded together"
             )
     return found
 
@@ -131,14 +132,19 @@ def _distinct(samples: list[Sample]) -> list[Sample]:
             is_same = sample.time == found[-1].time and np.array_equal(sample.positions, found[-1].positions)
             if not is_same:
                 raise _BadRecordingError(
-                    f"times must increase, but message {number} is at {1e-9 * sample.time:.9g} s, after "
-                    f"{1e-9 * found[-1].time:.9g} s; sort the messages by time, or record the bag again"
+                    f"times must increase, but message {number} is at {_seconds(sample.time)} s, after "
+                    f"{_seconds(found[-1].time)} s; sort the messages by time, or record the bag again"
                 )
             found.pop()
         found.append(sample)
     if len(found) < 2:
         raise _BadRecordingError(
-            f"it has {count(len(found), 'message', 'messages')} with the followed joints; a motion requires "
-            "two or more"
+            f"it has {count(len(found), 'message', 'messages')} with the followed joints and different "
+            "times; a motion requires at least two"
         )
     return found
+
+
+def _seconds(time: int) -> str:
+    """Return a time, ns, in seconds without rounding."""
+    return f"{Decimal(time).scaleb(-9).normalize():f}"

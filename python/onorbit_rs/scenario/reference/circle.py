@@ -19,11 +19,11 @@ class CircleReference(TimedReference):
 
     kind: Literal["circle"] = "circle"
     center: Length3
-    """Point on the axis, relative to the start of the reference, in the axes of ``frame``."""
+    """Point on the axis, m, relative to the start of the reference, in the axes of ``frame``."""
     axis: Number3
     """Direction of the axis, in the axes of ``frame``."""
     angle: Angle
-    """Angle of the arc about ``axis``."""
+    """Angle of the arc about ``axis``, rad."""
     turns: bool = True
     """Whether the attitude rotates with the arc."""
     ramp: Annotated[Number, Positive] | None = None
@@ -47,7 +47,7 @@ class ScrewReference(CircleReference):
 
     kind: Literal["screw"] = "screw"  # type: ignore[assignment]  # narrows the discriminator of the base
     advance: Length
-    """Displacement along ``axis`` from the start to the end of the arc."""
+    """Displacement along ``axis`` from the start to the end of the arc, m."""
 
     def build(self, at: Start) -> _core.Reference:
         """Return the engine's reference object."""

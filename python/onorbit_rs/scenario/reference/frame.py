@@ -16,7 +16,7 @@ from onorbit_rs.scenario.pose import Pose
 
 
 class TargetMotion(Pose):
-    """Free-flying spacecraft: its pose at time zero in W, constant velocity and angular velocity, W axes."""
+    """Motion of a free-flying spacecraft in W: its pose at time zero, constant velocity and constant spin."""
 
     synonyms: ClassVar = {
         "angular_velocity": "spin", "angular_rate": "spin", "rate": "spin", "linear_velocity": "velocity",
@@ -24,10 +24,11 @@ class TargetMotion(Pose):
     }  # fmt: skip
 
     velocity: Speed3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
+    """Velocity of the origin, m/s, in axes of W."""
     spin: AngularRate3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
-    """Angular velocity, in axes of W."""
+    """Angular velocity, rad/s, in axes of W."""
     size: Length3 | None = None
-    """Edge lengths of the box that the viewer draws at the target."""
+    """Edge lengths, m, of the box that the viewer draws at the target. Default: no box."""
 
 
 class TargetFrame(Part):

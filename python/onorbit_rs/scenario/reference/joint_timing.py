@@ -13,11 +13,11 @@ class JointTiming(Part):
     """Timing of a joint reference: given times, or the shortest times that limits on all joints allow."""
 
     speed: Annotated[JointRate, Positive] | None = None
-    """Largest rate of every joint."""
+    """Largest rate of every joint, rad/s or m/s."""
     acceleration: Annotated[JointAcceleration, Positive] | None = None
-    """Largest acceleration of every joint."""
+    """Largest acceleration of every joint, rad/s² or m/s²."""
     times: list[Time] | None = None
-    """Time of each point, from the start of the reference."""
+    """Time of each point, s, from the start of the reference."""
 
     def timing(self) -> dict[str, Any]:
         """Return times and limits as keyword arguments of the references of the engine."""

@@ -17,7 +17,10 @@ if TYPE_CHECKING:
 
 
 class JointWaypointsReference(JointTiming):
-    """Quintic splines from the initial positions through points; joints that are not given are held."""
+    """Quintic splines from the initial joint positions through points.
+
+    A joint that a point does not contain keeps its position at the point before.
+    """
 
     kind: Literal["joint_waypoints"] = "joint_waypoints"
     points: Annotated[list[JointPositions], Field(min_length=1)]

@@ -20,10 +20,10 @@ class LineParabolaReference(TaskReference):
 
     kind: Literal["line_parabola"] = "line_parabola"
     displacement: Length3
-    """Displacement from the first to the last position, in the axes of ``frame``."""
+    """Displacement from the first to the last position, m, in the axes of ``frame``."""
     height: Length3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
-    """Coefficient of s(1 - s), in the axes of ``frame``; at s = 1/2, a quarter of ``height`` is added to the
-    line."""
+    """Coefficient of s(1 - s), m, in the axes of ``frame``; at s = 1/2, a quarter of ``height`` is added to
+    the line."""
     duration: Annotated[Time, Positive]
 
     def build(self, at: Start) -> _core.LineParabola:

@@ -37,14 +37,17 @@ _LIMITS = {"duration", "speed", "acceleration", "angular_speed", "angular_accele
 
 
 class Goal(Part):
-    """Pose to be reached, given relative to the start or in the frame of the reference."""
+    """Pose to be reached, given relative to the start or in the frame of the reference.
+
+    A position or an attitude that is not given is that of the start.
+    """
 
     displacement: Length3 | None = None
-    """Displacement from the start position, in the axes of the frame."""
+    """Displacement from the start position, m, in the axes of the frame."""
     turn: Attitude | None = None
     """Rotation from the start attitude, about the axes of the frame."""
     position: Length3 | None = None
-    """Position of the goal in the frame."""
+    """Position of the goal in the frame, m."""
     attitude: Attitude | None = None
     """Attitude of the goal in the frame."""
 
@@ -110,16 +113,16 @@ class TaskReference(Part, ABC):
 
 
 class LimitedReference(TaskReference):
-    """Reference of a tool with limits; without given times, its duration is the shortest that they allow."""
+    """Reference of a tool with limits; without times, its duration is the shortest that the limits allow."""
 
     speed: Annotated[Speed, Positive] | None = None
-    """Largest speed of the tool."""
+    """Largest speed of the tool, m/s."""
     acceleration: Annotated[Acceleration, Positive] | None = None
-    """Largest acceleration of the tool."""
+    """Largest acceleration of the tool, m/s²."""
     angular_speed: Annotated[AngularRate, Positive] | None = None
-    """Largest angular rate of the tool."""
+    """Largest angular rate of the tool, rad/s."""
     angular_acceleration: Annotated[AngularAcceleration, Positive] | None = None
-    """Largest angular acceleration of the tool."""
+    """Largest angular acceleration of the tool, rad/s²."""
 
     def limits(self) -> dict[str, Any]:
         """Return the given limits, as keyword arguments of the references of the engine."""
@@ -130,4 +133,4 @@ class TimedReference(LimitedReference):
     """Reference of a tool with a given duration, or with the shortest duration that its limits allow."""
 
     duration: Annotated[Time, Positive] | None = None
-    """Duration of the motion, as an alternative to limits."""
+    """Duration of the motion, s, as an alternative to limits."""

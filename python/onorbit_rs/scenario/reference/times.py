@@ -19,7 +19,7 @@ def check_times(times: list[float] | None, what: str, points: int) -> None:
         entries = count(len(times), "entry", "entries")
         wanted = count(points, what, f"{what}s")
         raise invalid(
-            f"'times' has {entries} for {wanted}; give one time for each (the start is at time zero)"
+            f"'times' has {entries} for {wanted}; give one time per {what}, without that of the start"
         )
 
 

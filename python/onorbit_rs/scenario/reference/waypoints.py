@@ -22,7 +22,7 @@ class WaypointsReference(LimitedReference):
     kind: Literal["waypoints"] = "waypoints"
     points: Annotated[list[Goal], Field(min_length=1)]
     times: list[Time] | None = None
-    """Time of each pose, from the start of the reference."""
+    """Time of each pose, s, from the start of the reference."""
     stops: bool = True
     """Whether the tool comes to rest at each pose."""
 

@@ -53,7 +53,7 @@ def create_object(part: UserClass, folder: Path) -> Any:
     except Exception as error:
         raise part.error(
             f"{part.class_}(...) of {source} raised {_one_line(error)}; correct the class or its "
-            f"'arguments', {part.arguments}",
+            f"'arguments' ({part.arguments or 'none are given'})",
             name="arguments",
             got=part.arguments,
         ) from error

@@ -67,8 +67,8 @@ def compare(
         world, other = (first, second) if isinstance(first, RecordedWorld) else (second, first)
         names = ", ".join(world.systems) if isinstance(world, RecordedWorld) else ""
         raise CompareError(
-            f"{world.name} has the systems {names} and {other.name} has one robot; compare two runs with the "
-            "same systems, or two runs of one robot",
+            f"{world.name} is a run with 'systems' ({names}), but {other.name} is a run of one robot; "
+            "compare two runs with the same systems, or two runs of one robot",
             name="systems", got=1, expected=names,
         )  # fmt: skip
     return compared_robots(first, second, allowed, settings)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from onorbit_rs.common.coordinates import QUATERNION
+from onorbit_rs.common.numbers import shortest
 from onorbit_rs.common.rotations import angle_between, quaternion_from_matrix
 from onorbit_rs.exceptions import CompareError
 
@@ -25,8 +26,9 @@ SAME_INSTANT = 1e-9
 def aligned_rows(a: Recorded, b: Recorded) -> tuple[Rows, Rows, Floats, list[str]]:
     """Return the rows of both runs at common instants, these instants, and remarks.
 
-    Rows at equal instants are used unchanged. If fewer than half of the rows of the shorter trace have equal
-    instants, the second run is interpolated at the instants of the first run.
+    Rows at equal instants are used unchanged. The second run is interpolated at the instants of the first run
+    if the rows at equal instants are fewer than half of its rows and fewer than half of the first run's rows
+    in the common time span.
 
     Raises
     ------
@@ -38,15 +40,15 @@ def aligned_rows(a: Recorded, b: Recorded) -> tuple[Rows, Rows, Floats, list[str
     start, end = max(time_a[0], time_b[0]), min(time_a[-1], time_b[-1])
     if not end >= start:
         raise CompareError(
-            f"{a.name} covers {time_a[0]:g} to {time_a[-1]:g} s and {b.name} {time_b[0]:g} to "
-            f"{time_b[-1]:g} s; runs must overlap in time to be compared",
+            f"{a.name} covers {shortest(time_a[0])} to {shortest(time_a[-1])} s, and {b.name} covers "
+            f"{shortest(time_b[0])} to {shortest(time_b[-1])} s; runs must overlap in time to be compared",
             name="time", got=(float(time_b[0]), float(time_b[-1])),
             expected=(float(time_a[0]), float(time_a[-1])),
         )  # fmt: skip
     remarks = []
     if abs(time_a[-1] - time_b[-1]) > SAME_INSTANT * (1.0 + end):
-        ends = f"{a.name} ends at {time_a[-1]:g} s, {b.name} at {time_b[-1]:g} s"
-        remarks.append(f"{ends}: compared until {end:g} s")
+        ends = f"{a.name} ends at {time_a[-1]:.12g} s, {b.name} at {time_b[-1]:.12g} s"
+        remarks.append(f"{ends}: compared until {end:.12g} s")
     at_a, at_b = _equal_instants(time_a, time_b)
     within = (time_a >= start) & (time_a <= end)
     if 2 * len(at_a) >= min(int(within.sum()), len(time_b)):
@@ -87,11 +89,10 @@ def _equal_instants(time_a: Floats, time_b: Floats) -> tuple[NDArray[np.intp], N
 
 
 def _interpolated(rows: Rows, at: Floats) -> Rows:
-    """Return the rows at the times ``at``, interpolated linearly except quaternions, orbits and torques.
+    """Return the rows at the times ``at``, s, of which most columns are interpolated linearly.
 
-    Quaternions are interpolated by slerp and orbits by cubics; torques are held.
-
-    Cubics add the column ``hermite_error``, their error, m.
+    Quaternions are interpolated by slerp, and inertial positions by cubics if the velocities are known;
+    torques are held. With cubics, the column ``hermite_error`` contains an estimate of their error, m.
     """
     time = rows["time"]
     if len(time) == 1:

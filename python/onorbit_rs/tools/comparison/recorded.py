@@ -71,8 +71,8 @@ class Recorded:
             model = self.scenario.robot.build(self.scenario)
         if has_changed(model, self.fingerprint):
             raise ModelError(
-                f"{self.robot} has changed since {self.name} was recorded; restore the robot or run the "
-                "scenario again",
+                f"the robot {self.robot} has changed since {self.name} was recorded; restore the robot, or "
+                "run the scenario again",
                 path=str(self.robot),
             )
         return list(model.joint_names)

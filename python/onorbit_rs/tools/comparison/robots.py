@@ -114,7 +114,7 @@ def _difference(name: str, unit: str, values: Floats, allowed: float, time: Floa
 
 
 def _openings(a: Recorded, b: Recorded) -> list[str]:
-    """Return a note on how far each run opened its loops and mimic joints, if it has any."""
+    """Return a note on the largest opening of loops and mimic joints in each run; empty without any."""
     found = [f"{run.opening:.1e} in {run.name}" for run in (a, b) if run.opening is not None]
     return [f"largest opening of loops and mimic joints, m or rad: {', '.join(found)}"] if found else []
 

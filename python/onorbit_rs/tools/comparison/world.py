@@ -52,8 +52,8 @@ class WorldComparison(Verdict):
     systems: Mapping[str, Comparison]
     """Comparison of each system, by name."""
     events: tuple[EventDifference, ...]
-    """Differences of the events: five quantities each, six for a lift-off, and only the time of an event that
-    happened in one run only.
+    """Differences of the events: five quantities of each event, six if it has a peak force, and only the time
+    of an event that happened in one run only.
     """
     notes: tuple[str, ...]
     """Notes on differing settings and on events that were not compared."""
@@ -65,7 +65,7 @@ class WorldComparison(Verdict):
         return min([*systems, *(event.time for event in self.events if not event.agrees)], default=None)
 
     def __getitem__(self, name: str) -> Comparison:
-        """Return the comparison of a system; raises a CompareError for another name."""
+        """Return the comparison of a system; raise CompareError for an unknown name."""
         return entry(self.systems, name, "system of the runs")
 
     def __str__(self) -> str:
@@ -95,8 +95,8 @@ def compared_worlds(
     if set(a.systems) != set(b.systems):
         names = [", ".join(world.systems) for world in (a, b)]
         raise CompareError(
-            f"{a.name} has the systems {names[0]} and {b.name} has {names[1]}; only runs with the same "
-            "systems can be compared",
+            f"{a.name} has the systems {names[0]}, but {b.name} has the systems {names[1]}; only runs with "
+            "the same systems can be compared",
             name="systems", got=names[1], expected=names[0],
         )  # fmt: skip
     systems = {name: compared_robots(own, b.systems[name], tolerance) for name, own in a.systems.items()}

@@ -58,7 +58,7 @@ def convert(
     keep_going : bool
         Whether an unknown key causes a note instead of an error.
     beside : path, optional
-        Folder of the new scenario; the path of the robot is relative to it.
+        Folder of the new scenario; the path of the robot is relative to it. Default: the path as given.
 
     Returns
     -------
@@ -83,6 +83,7 @@ def convert(
         )
         raise InputError(what, name="paths", got=len(files), expected="YAML files and at most one robot")
     notes: list[Note] = []
+    origins: dict[str, Path] = {}
     scenario: dict[str, Any] = {"robot": dict(PLACEHOLDER)}
     comments: dict[Location, str] = {
         ("robot",): "a placeholder; also give onorbit convert a URDF or xacro file"
@@ -97,11 +98,12 @@ def convert(
         for key, part in source.result.items():
             if key in scenario and key not in ("simulation", "robot"):
                 raise scenario_error(
-                    f"'{key}' is also defined in an earlier file; omit one of the two files",
+                    f"the entry {key!r} of the scenario is also defined in {origins[key]}; omit one of "
+                    "the definitions",
                     source.file,
                     None,
                 )
-            scenario[key] = part
+            scenario[key], origins[key] = part, source.file
         comments |= source.comments
     if {"controller", "controllers"} & set(scenario) and not robots:
         raise scenario_error(

@@ -32,7 +32,7 @@ def joints_of(part: dict[str, Any]) -> list[str]:
 
 
 def read_task_law(source: Source, law: Location) -> None:
-    """Convert a controller to ``tool``, ``reference`` and the keys of a control law.
+    """Convert a controller to ``tool`` and a control law and, if it has a duration, to a ``reference``.
 
     ``law`` is the location of the keys of the law; it is empty for an entry of ``controllers``.
     """

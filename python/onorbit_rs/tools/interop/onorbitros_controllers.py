@@ -17,7 +17,7 @@ def read_controllers(source: Source, wanted: str | None, external: bool) -> None
     """Convert the controller ``wanted``; if None, all controllers, or the first if they cannot run together.
 
     A single controller of an end effector becomes ``tool``, ``controller`` and ``reference``; other or
-    several controllers become ``controllers``. With ``external``, those with a PID follow commands.
+    several controllers become ``controllers``. With ``external``, controllers with a PID follow commands.
     """
     if is_of_task(source.data):
         read_task_law(source, ("controller",))
@@ -29,9 +29,9 @@ def read_controllers(source: Source, wanted: str | None, external: bool) -> None
     if not known:
         kinds = ", ".join(sorted({str(part["type"]) for part in parts.values() if "type" in part})) or "none"
         raise source.fail(
-            next(iter(source.data)), "this mapping contains neither a controller with an end_effector_link "
-            "nor one of ROS Control that commands efforts, directly or with a PID (the types found are "
-            f"{kinds})",
+            next(iter(source.data)),
+            f"this mapping contains no controller that can be converted (types found: {kinds}); give one "
+            "with an end_effector_link, or one of ROS Control that commands efforts, directly or with a PID",
         )  # fmt: skip
     if wanted is not None and wanted not in known:
         raise source.fail(known[0], f"no controller is named {wanted!r}{did_you_mean(wanted, known)}")

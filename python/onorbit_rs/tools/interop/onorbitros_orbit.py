@@ -7,6 +7,7 @@ from datetime import datetime, timedelta
 from typing import TYPE_CHECKING
 
 from onorbit_rs._core import MU_EARTH
+from onorbit_rs.common.numbers import shortest
 
 if TYPE_CHECKING:
     from onorbit_rs.tools.interop.source import Source
@@ -87,16 +88,18 @@ def _element(source: Source, name: str, key: str | None) -> float:
     if name == "semi_major_axis" and not (1e3 < value < 1e6):
         raise source.fail(
             key,
-            f"{value:g} km is not the semi-major axis of an ellipse around the Earth (1e3 to 1e6 km); "
-            "OnOrbitROS uses km and supports ellipses only",
+            f"{shortest(value)} km is not the semi-major axis of an ellipse around the Earth; give more than "
+            "1000 km and less than 1000000 km: OnOrbitROS uses km and supports ellipses only",
         )
     if name == "eccentricity" and not (0.0 <= value < 1.0):
         raise source.fail(
-            key, f"{value:g} is not the eccentricity of an ellipse; it must be from 0 to below 1"
+            key, f"{shortest(value)} is not the eccentricity of an ellipse; it must be from 0 to below 1"
         )
     if unit == "rad" and abs(value) > 2.0 * math.pi + 1e-9:
         raise source.fail(
-            key, f"{value:g} rad is more than one revolution; write degrees as ({value:g}*pi)/180.0"
+            key,
+            f"{shortest(value)} rad is more than one revolution; if the value is in degrees, write "
+            f"({shortest(value)}*pi)/180.0",
         )
     what = f"{_KEYS[name]} {value:.9g} {unit}".rstrip()
     if key != name:
@@ -139,11 +142,16 @@ def _since_perigee(source: Source, a_m: float) -> float:
 
 
 def _date(source: Source, name: str) -> datetime | None:
-    """Return a date, read like C's ``struct tm``: months from 0, years from 0 or 1900; None if incomplete."""
+    """Return a date, read like C's ``struct tm``: months count from 0, and years below 1000 from 1900.
+
+    Returns None if the date is incomplete.
+    """
     nested = source.data.get(name)
     parts: dict[str, object] = dict(nested) if isinstance(nested, dict) else {}
     if nested is not None and not isinstance(nested, dict):
-        raise source.fail(name, f"a date must be a mapping of {', '.join(_DATE_PARTS)}, not {nested!r}")
+        raise source.fail(
+            name, f"a date must be a mapping with the keys {', '.join(_DATE_PARTS)}, not {nested!r}"
+        )
     parts |= {part: source.data[key] for part in _DATE_PARTS if (key := f"{name}/{part}") in source.data}
     unknown = [part for part in parts if part not in _DATE_PARTS]
     if unknown:
@@ -180,7 +188,8 @@ def read_fixed_pose(source: Source) -> None:
     norm = math.hypot(*quat)
     if abs(norm - 1.0) > 1e-3:
         raise source.fail(
-            "orientation_w", f"the quaternion has norm {norm:.6g}; it must be 1 within 1e-3; normalise it"
+            "orientation_w",
+            f"the quaternion has norm {shortest(norm)}; it must be 1 within 1e-3; normalise it",
         )
     source.put(("orbit", "kind"), "fixed_frame", "kind")
     source.put(("orbit", "position"), position, "pos_x")

@@ -19,10 +19,11 @@ KEYS = (
     "stop_trajectory_duration",
 )  # fmt: skip
 GAINS = ("p", "i", "d", "i_clamp")
+_KEYS_OF_GAINS = (*GAINS, "i_clamp_min", "i_clamp_max", "antiwindup")
 
 
 def is_pid(part: dict[str, Any]) -> bool:
-    """Return whether a controller has gains and a type of ROS Control's ``effort_controllers``."""
+    """Return whether a controller has gains and is one of :data:`INTERFACES` in ``effort_controllers``."""
     kind = str(part.get("type")).partition("effort_controllers/")[2]
     return kind in INTERFACES and ("gains" in part or "pid" in part)
 
@@ -80,8 +81,9 @@ def _gains_of(source: Source, key: str, joint: str) -> dict[str, float]:
     if key == "gains":
         inside = inside.inside(joint)
     for name in table:
-        if name not in (*GAINS, "antiwindup", "i_clamp_min", "i_clamp_max"):
-            raise inside.fail(name, f"is not a gain of ROS Control; the gains are {', '.join(GAINS)}")
+        if name not in _KEYS_OF_GAINS:
+            known = ", ".join(_KEYS_OF_GAINS)
+            raise inside.fail(name, f"is not a gain of ROS Control; the gains are {known}")
     found = {name: inside.number(name) if name in table else 0.0 for name in GAINS}
     for name in ("i_clamp_min", "i_clamp_max"):
         if name in table:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
 
-from onorbit_rs.common.suggestions import did_you_mean
+from onorbit_rs.common.suggestions import nearest
 from onorbit_rs.exceptions import OnOrbitError, QuantityError
 from onorbit_rs.scenario.locations import dotted, scenario_error
 from onorbit_rs.scenario.yaml_lines import Lines, Location
@@ -72,7 +72,8 @@ class Source:
         for key in self.data:
             if key in known:
                 continue
-            hint = did_you_mean(key, known) or f"; the keys here are {', '.join(known)}"
+            near = nearest(key, known)
+            hint = f" (did you mean {near!r}?)" if near else f" (the keys here are {', '.join(known)})"
             if not self.keep_going:
                 fix = "correct or remove the key, or use --keep-going to ignore it"
                 raise self.fail(key, f"{key!r} is not a key of OnOrbitROS{hint}; {fix}")

@@ -23,7 +23,10 @@ if TYPE_CHECKING:
 _HANDLES = (r"grapple", r"handle", r"grasp", r"dock", r"berth")
 """Patterns of the names of frames by which a spacecraft is captured, the most reliable first."""
 _FACING = 0.3
-"""Smallest cosine of the angle between the tool axis and the line from the handle to the target."""
+"""Smallest cosine of the angle between tool axis and target for which the target is not rotated.
+
+The direction of the target is that of the line from its handle to its centre of mass.
+"""
 _SEPARATION, _RECOIL = 0.02, 0.1
 """Relative speed of the craft after the release, m/s, unless the arm would recoil faster than ``_RECOIL``,
 m/s.

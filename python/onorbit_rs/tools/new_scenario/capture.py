@@ -57,7 +57,7 @@ def draft_capture(
 ) -> CaptureDraft:
     """Return a commented scenario of a capture and a release; its trial run passed the certificate.
 
-    Trials take at most ``LONGEST_S``.
+    All trial runs together take at most ``LONGEST_S`` of wall-clock time, s.
 
     Parameters
     ----------
@@ -125,17 +125,19 @@ def _attached(models: tuple[Model, Model], plan: CapturePlan, q: list[Floats]) -
 
 def _first_passing(models: tuple[Model, Model], plan: CapturePlan) -> CapturePlan:
     """Return the first plan whose trial run passes, in the order of :func:`_plans`."""
-    ends, reasons = perf_counter() + LONGEST_S, []
+    ends = perf_counter() + LONGEST_S
+    reasons: dict[str, list[str]] = {}
     for tried in _plans(models, plan):
         reason = _failure(tried, perf_counter() + 0.5 * (ends - perf_counter()))
         if reason is None:
             return tried
         step = f"{1e3 * tried.time_step_s:g} ms"
-        reasons.append(f"{reason} ({tried.integrator} with {step}, {100 * tried.speed:g} cm/s)")
+        setting = f"{tried.integrator} with {step} at {100 * tried.speed:g} cm/s"
+        reasons.setdefault(reason, []).append(setting)
+    listed = "; ".join(f"{reason} ({', '.join(settings)})" for reason, settings in reasons.items())
     raise ScenarioError(
-        f"every trial run of {plan.name} failed: {'; '.join(dict.fromkeys(reasons))}. Check inertias, "
-        "damping and limits with 'onorbit info'; change the files, or give other frames with --tool and "
-        "--target-frame",
+        f"every trial run of {plan.name} failed; check inertias, damping and limits with 'onorbit info', "
+        f"change the files, or give other frames with --tool and --target-frame; reasons: {listed}",
         file=None, path=None, line=None,
     )  # fmt: skip
 

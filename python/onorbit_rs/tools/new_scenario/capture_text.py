@@ -146,7 +146,7 @@ def _hold(joints: int, damping: int, remark: str = "") -> str:
 
 
 def _joints(home: dict[str, float]) -> str:
-    """Return the text of the chaser's initial state."""
+    """Return the text of the chaser's initial state; empty if all joint positions are zero."""
     if not home:
         return ""
     head = (

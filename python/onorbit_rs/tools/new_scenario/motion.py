@@ -139,9 +139,9 @@ def lines(model: Model, arm: Arm, joints: dict[str, float]) -> Iterator[tuple[li
 def joint_goals(
     model: Model, start: dict[str, float], fractions: Iterable[float]
 ) -> Iterator[dict[str, float]]:
-    """Yield joint goals: ``start`` plus fractions of 1 rad or m, or of the distance to the farther limit.
+    """Yield joint goals, rad or m, each a step from ``start`` towards the farther limit of every joint.
 
-    The smaller of the two is used.
+    The step is a fraction of the distance to this limit, or of 1 rad or m if the distance is larger.
     """
     for fraction in fractions:
         goal = {}

@@ -52,7 +52,10 @@ class Source:
         return f"{Path(self.robot).name.split('.')[0] if robots.is_file(self.robot) else model.name}_first"
 
     def entry(self, beside: Path | None, model: Model) -> dict[str, Any] | str:
-        """Return the scenario's ``robot`` entry; paths are relative to ``beside``, absolute if None."""
+        """Return the scenario's ``robot`` entry, with paths relative to ``beside`` where they are short.
+
+        Paths that lead more than two levels up are absolute, as are all paths if ``beside`` is None.
+        """
         robot = self._robot(beside)
         if self.bus is None:
             return robot

@@ -51,8 +51,9 @@ def draft(
 ) -> Draft:
     """Return a commented scenario in which the robot's arm moves; its trial run passed the certificate.
 
-    Trials take at most ``LONGEST_S``. If every trial of a motion fails, all joints are held, and a comment in
-    the scenario gives the reasons.
+    All trial runs together take at most ``LONGEST_S`` of wall-clock time, s. If every trial of a motion
+    fails, all joints are held, and a comment in the scenario gives the reasons. A robot without an arm
+    rotates freely.
 
     Parameters
     ----------
@@ -101,10 +102,12 @@ def _first_passing(model: Model, arm: Arm | None, plan: Plan) -> Plan:
         found = trials.gentlest(plans, 0.5 * (ends - perf_counter()))
         if found is not None:
             return found if found.arm else replace(found, failures=trials.failures() or [_NO_ROOM])
+    held, other = ", including one that holds all joints for 1 s", ", or give another frame with --tool"
+    if arm is None:
+        held = other = ""
     raise ScenarioError(
-        f"every trial run of {plan.name} failed, including one that holds all joints for 1 s: "
-        f"{', '.join(trials.failures())}. Check inertias, damping and limits with 'onorbit info'; "
-        "change the file, or give another frame with --tool",
+        f"every trial run of {plan.name} failed{held}; check inertias, damping and limits with "
+        f"'onorbit info', change the file{other}; reasons: {', '.join(trials.failures())}",
         file=None, path=None, line=None,
     )  # fmt: skip
 

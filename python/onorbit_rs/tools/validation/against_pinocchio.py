@@ -25,7 +25,7 @@ KERNELS = (
 
 
 def theirs(text: str, model: oo.Model, state: Any, tool: str) -> list[Any]:
-    """Return the results of Pinocchio's algorithms, reordered to the joint order of ``model``."""
+    """Return Pinocchio's results, in the order of :data:`KERNELS` and in the joint order of ``model``."""
     pin: Any = importlib.import_module("pinocchio")
     robot = pin.buildModelFromXML(text, pin.JointModelFreeFlyer())
     robot.gravity.linear = GRAVITY
@@ -59,7 +59,7 @@ def theirs(text: str, model: oo.Model, state: Any, tool: str) -> list[Any]:
 
 
 def ours(model: oo.Model, state: Any, tool: str) -> list[Any]:
-    """Return the results of this package's algorithms."""
+    """Return the results of this package's algorithms, in the order of :data:`KERNELS`."""
     return [
         model.mass_matrix(state.q),
         model.bias_forces(state.q, state.v),

@@ -46,9 +46,9 @@ def spart(text: str) -> tuple[Any, list[str]]:
         with contextlib.redirect_stdout(io.StringIO()):  # spartpy prints a message when it compiles
             robot.kinematics(np.eye(3), np.zeros(3), np.zeros(n))
     except RuntimeError as error:
-        raise CannotRunError(
-            f"spartpy cannot be built on this machine: {str(error).splitlines()[0]}"
-        ) from error
+        reason = next(iter(str(error).splitlines()), "it gave no reason")
+        message = f"spartpy cannot be built on this machine ({reason}); check that a C compiler is installed"
+        raise CannotRunError(message) from error
     return robot, sorted(names["q_id"], key=names["q_id"].__getitem__)
 
 

@@ -25,7 +25,7 @@ SEEDS = range(3200, 3212)
 
 
 def wheel() -> oo.Model:
-    """Return a base with a wheel about its z axis, through the centres of mass of both."""
+    """Return a base with a wheel; the axis z of the wheel passes through both centres of mass."""
     builder = oo.ModelBuilder("craft", base="base", mass=20.0, inertia=np.diag([BASE, BASE, BASE]))
     builder.add_link(
         "wheel", parent="base", joint="spin", kind="continuous", axis=[0, 0, 1],
@@ -131,9 +131,9 @@ ENGAGE = {"velocity": 1e-12, "energy": 1e-12, "momentum": 1e-13, "impulse": 1e-1
 
 
 def engage_against_gauss(seed: int) -> tuple[float, ...]:
-    """Return the errors when a rigid brake stops a moving joint while another one is held.
+    """Return the relative errors when a rigid brake stops a moving joint while another one is held.
 
-    The quantities are those of :data:`ENGAGE`, each relative to its largest value.
+    The errors are those of the quantities of :data:`ENGAGE`, in the same order.
     """
     craft, (held, *_) = _held(random_craft(seed), seed)
     moving = next(j for j in range(craft.model.nv - BASE_NV) if craft.v[BASE_NV + j] != 0.0)

@@ -52,7 +52,7 @@ class Check:
 
     @property
     def ratio(self) -> float:
-        """Error divided by the gate; infinite if the error is missing or NaN."""
+        """Error divided by the gate; infinite if the error is missing or NaN, or above a gate of zero."""
         if self.error is None or self.error != self.error:
             return float("inf")
         return 0.0 if self.error == 0.0 else self.error / self.gate if self.gate else float("inf")

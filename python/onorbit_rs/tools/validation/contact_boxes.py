@@ -33,7 +33,7 @@ def collide() -> oo.WorldTrace:
     trace = oo.Simulation(oo.World(systems, contacts=[contact]), time_step=0.01).run(3.0)
     assert isinstance(trace, oo.WorldTrace)
     if not trace.contacts["touch"].force.any():
-        raise ValueError("the boxes do not touch")
+        raise ValueError("the contact force of the boxes is zero at all times; they must touch")
     return trace
 
 

@@ -59,7 +59,7 @@ def resting(model: oo.Model, velocity: tuple[float, ...] = (0, 0, 0, 0, 0, 0)) -
 
 
 def weight() -> oo.BodyWrench:
-    """Return the weight of a sphere whose z axis remains that of W."""
+    """Return the weight of a sphere of 1 kg whose axis z remains parallel to that of W."""
     return oo.BodyWrench("sphere/body", force=[0.0, 0.0, -WEIGHT])
 
 
@@ -144,8 +144,9 @@ def break_away() -> tuple[float, float]:
     touch, time = trace.contacts["touch"], trace["sphere"].time
     ratio = np.hypot(touch.force[:, 0], touch.force[:, 1]) / touch.force[:, 2]
     late = time > 0.65
-    if touch.slip[late].min() < 0.01:
-        raise ValueError("the body does not slide at the end")
+    slowest = float(touch.slip[late].min())
+    if slowest < 0.01:
+        raise ValueError(f"the body slides at only {slowest:.3g} m/s at the end; the minimum is 0.01 m/s")
     top = int(np.argmax(ratio))  # the last row at rest; the step after it ends where the body breaks away
     near = slice(top - 2, top + 1)
     at_cut = np.polyval(np.polyfit(time[near] - time[top], ratio[near], 2), time[top + 1] - time[top])
@@ -153,12 +154,12 @@ def break_away() -> tuple[float, float]:
 
 
 def returning() -> tuple[float]:
-    """Return the displacement that remains after a tangential force of 0.1 s inside the cone, in m."""
+    """Return the displacement, m, that remains after a tangential force inside the cone acts for 0.1 s."""
     pulse = oo.BodyWrench("sphere/body", force=[PULSE * MU * G, 0.0, 0.0], start=0.1, end=0.2)
     trace = pressed(resting(block()), FRICTION, weight(), pulse, lasts=0.5)
     moved = trace["sphere"].q[:, 0]
     if moved.max() < 1e-7:
-        raise ValueError(f"the force moved the body by only {moved.max():.1e} m")
+        raise ValueError(f"the force moved the body by only {moved.max():.3g} m; it must be at least 1e-7 m")
     return (abs(float(moved[-1])),)
 
 

@@ -118,7 +118,8 @@ def falls() -> list[float]:
     """Return the largest errors of boxes that fall on a plate, corner by corner, with friction.
 
     They are the energy created by an impact and the error of the energy balance, both relative to the energy
-    at the start, and the changes of linear and angular momentum, both divided by the impulse (in 1 and m).
+    at the start, the change of linear momentum, relative to the impulse, and the change of angular momentum,
+    divided by the impulse, m.
     """
     rng = np.random.default_rng(3)
     errors = []

@@ -69,7 +69,7 @@ def bar() -> oo.Model:
 
 
 def start(opening: float = 0.06) -> tuple[np.ndarray, np.ndarray]:
-    """Return the configuration of the hand with an opening, m, and the position of its frame ``grasp``, m."""
+    """Return the configuration of the hand with an opening, m, and the place of ``grasp`` in W, (3,), m."""
     q = hand().neutral()
     q[8:] = opening / 2
     return q, hand().frame_pose(q, "grasp")[:3, 3]
@@ -136,7 +136,7 @@ def in_hand(trace: oo.WorldTrace) -> np.ndarray:
 
 
 def three_fingers(radius: float, integral: float) -> tuple[oo.WorldTrace, oo.Model]:
-    """Return the trace and the model of a hand with three fingers that closes on a pin along its axis."""
+    """Return the trace and the model of a three-finger hand that closes on a pin with a ``radius``, m."""
     model = oo.robots.load("three_finger_hand")
     q = model.neutral()
     place = model.frame_pose(q, "grasp")[:3, 3]

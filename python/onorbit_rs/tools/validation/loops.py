@@ -184,7 +184,9 @@ def braked(slip_torque: float, duration: float) -> tuple[Linkage, oo.WorldTrace]
 
 
 def rigid_brake() -> tuple[float, float, float]:
-    """Return the errors of energy lost and impulse of a rigid brake, and the largest rate after it.
+    """Return the errors of energy lost, J, and impulse, N m s, of a rigid brake, and the speed afterwards.
+
+    The speed is the largest component of the velocity, m/s or rad/s.
 
     The brake stops the whole linkage: the energy lost is `½ J θ̇²`, the impulse about the crank's axis `-J θ̇`.
     """
@@ -198,7 +200,7 @@ def rigid_brake() -> tuple[float, float, float]:
 
 
 def slipping_brake() -> tuple[float, float]:
-    """Return the errors of the angle at which a slipping brake stops the crank, and of the energy dissipated.
+    """Return the errors of a slipping brake: the final angle of the crank, rad, and dissipated energy, J.
 
     The crank turns by `½ J θ̇²/T` until it stops.
     """

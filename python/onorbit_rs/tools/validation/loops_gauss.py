@@ -88,7 +88,7 @@ def gripper(seed: int, redundant: bool = True) -> Craft:
 
 
 def expected_capture(first: Craft, second: Craft) -> Array:
-    """Return the velocities (Σnv,) after a capture: those nearest to the earlier ones that loops permit."""
+    """Return the velocities (Σnv,) after a capture, by Gauss's principle with the rows of all loops."""
     crafts = (first, second)
     own = np.zeros((len(rows(first.model, first.q)), first.model.nv + second.model.nv))
     own[:, : first.model.nv] = rows(first.model, first.q)
@@ -97,9 +97,9 @@ def expected_capture(first: Craft, second: Craft) -> Array:
 
 
 def capture_with_gripper(seed: int) -> tuple[float, float, float]:
-    """Return the relative errors of velocity, energy loss and momentum in a capture.
+    """Return the errors of velocity, energy lost and momentum in a capture by a gripper with closed loops.
 
-    The gripper has closed loops.
+    All errors are relative.
     """
     first, second = gripper(seed), random_craft(seed)
     systems = [oo.System(name, c.model, c.q, c.v) for name, c in zip("ab", (first, second), strict=True)]

@@ -48,7 +48,10 @@ def sphere() -> oo.Model:
 
 
 def turning_earth() -> oo.Earth:
-    """Return the Earth of run 3A, with TAI-UTC = 32 s and TAI-UT1 = 32.469 s."""
+    """Return the Earth of run 3A, with TAI-UT1 = 32.469 s.
+
+    The epoch of the run is 0 h UTC with NASA's TAI-UTC, 32 s; the Earth's model uses the correct 33 s.
+    """
     return oo.Earth("2007-11-20T00:00:32 TAI", ut1_minus_utc=33.0 - 32.469)
 
 
@@ -137,7 +140,10 @@ def rows(run: str) -> list[Row]:
 
 
 def simulate(run: str, case: CheckCase | None = None, duration: float = HOURS_8) -> oo.Trace:
-    """Simulate a run, or a variant of it that keeps the initial attitude of the run's table."""
+    """Simulate a run, or a variant ``case`` of it, for ``duration`` seconds.
+
+    If the pitch of the case is None, the first row of the run defines the initial attitude and rate.
+    """
     case = case or RUNS[run]
     rate, attitude = case.rate, pitched(case.orbit, case.pitch or 0.0)
     if case.pitch is None:

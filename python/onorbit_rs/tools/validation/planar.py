@@ -111,7 +111,7 @@ class Reduced:
 
 
 def reduce(bodies: Sequence[Body]) -> Reduced:
-    """Return the reduced inertia of free bodies, of which the first is the base.
+    """Return the reduced model of free bodies in a plane that move with one coordinate, base first.
 
     About the common mass centre, with `u` the positions of the mass centres from there,
     `J = Σ m|u'|² + I φ'² - L²/T`, where `L θ̇` would be the angular momentum if the base did not turn and `T`

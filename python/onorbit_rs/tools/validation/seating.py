@@ -19,7 +19,7 @@ TURNED = INERTIAS[1]  # used by the simulation
 
 
 def pulled() -> tuple[float, float, float, float]:
-    """Return the errors of the final positions, of the energy halfway, of momentum and of work.
+    """Return the errors of final positions, m, energy halfway (relative), momentum, N s, and work, J.
 
     Two bodies are pulled together along the line through their centres of mass; the common centre of mass
     stays at rest. Halfway, the relative speed `v` is 15/8 of its mean, and the kinetic energy of the masses
@@ -50,8 +50,8 @@ def turned() -> tuple[float, float]:
     """Return the errors of the first body's final attitude, rad, and of the relative rotation matrix.
 
     The bodies share a rotation `θ` about the common axis according to their moments of inertia `I1` and `I2`
-    about it: the first turns by `θ1 = −θ I2/(I1 + I2)`. The first value is the larger one of its error and of
-    the largest displacement of a body, m, which should be zero.
+    about it: the first turns by `θ1 = −θ I2/(I1 + I2)`. The first value is the larger one of the error of
+    `θ1` and of the largest displacement of a body, m, which should be zero.
     """
     first, second = INERTIAS
     systems = [rigid("a", 50.0, [4, 4, first], [0, 0, 0], np.zeros(6)),

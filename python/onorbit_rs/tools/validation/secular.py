@@ -31,7 +31,10 @@ QI = {
 
 
 def elements(r: Any, v: Any, mu: float) -> Any:
-    """Return the eccentricity, inclination, node and argument of periapsis, (T, 4), rad, of states (T, 3)."""
+    """Return the eccentricity and, in rad, inclination, node and argument of periapsis, (T, 4), of states.
+
+    The states are positions ``r``, m, and velocities ``v``, m/s, (T, 3) each.
+    """
     h = np.cross(r, v)
     size = np.linalg.norm(h, axis=-1)
     e = np.cross(v, h) / mu - r / np.linalg.norm(r, axis=-1)[:, None]

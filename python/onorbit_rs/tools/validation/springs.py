@@ -144,7 +144,7 @@ def damped_position(time: Array) -> Array:
 
 
 def damped() -> tuple[float, float]:
-    """Return the errors of the deflection, rad, and of the energies, J, of the damped wheel."""
+    """Return the errors of the deflection, rad, and of the energy balance, J, of the damped wheel."""
     trace = released(wheel(damping=DAMPING, rest_position=REST), AMPLITUDE, 3.0, 1e-3)
     deflection = np.asarray(trace.q)[:, 7] - REST
     energies = (
@@ -157,7 +157,7 @@ def damped() -> tuple[float, float]:
 
 
 def rubbing_end() -> tuple[float, float]:
-    """Return the deflection, rad, at which the wheel with friction sticks, and the time, s, at which it does.
+    """Return the deflection, rad, and the time, s, at which the wheel with friction sticks.
 
     In each half swing, of the duration `π/ω`, friction `f` reduces the amplitude by `2 f/k`. The wheel sticks
     at the first turning point at which the spring holds less than `f`.

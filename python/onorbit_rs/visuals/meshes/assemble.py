@@ -62,13 +62,13 @@ def make_part(
     else:
         directions = np.asarray(normals, dtype=np.float32).reshape(-1, 3)
     if len(directions) != len(points) or (places is not None and len(places) != len(points)):
-        uv = "" if places is None else f" and {len(places)} texture coordinates"
+        uv = "" if places is None else f", texture coordinates: {len(places)}"
         raise ValueError(
-            f"it has {len(points)} vertices, but {len(directions)} normals{uv}; the numbers must "
-            "be equal; export the mesh again"
+            "it has different numbers of vertices and of their attributes (vertices: "
+            f"{len(points)}, normals: {len(directions)}{uv}); export the mesh again"
         )
     if not np.isfinite(points).all():
-        raise ValueError("it has vertices that are not finite; export the mesh again")
+        raise ValueError("it has vertices whose coordinates are not finite; export the mesh again")
     tints = np.broadcast_to(tints, (len(points), 4))
     return Part(
         points, index, unit(np.nan_to_num(directions)), tints, None if places is None else texture, places

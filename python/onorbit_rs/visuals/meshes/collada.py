@@ -57,8 +57,8 @@ def _check_kind(content: bytes) -> None:
 
     def refuse(*_: Any) -> None:
         raise ValueError(
-            "it has a document type (<!DOCTYPE>), which is not read, because its entities can expand to any "
-            "length; remove the document type"
+            "it declares a document type (<!DOCTYPE>), which is not supported, because the declared entities "
+            "can expand to any length; remove the declaration"
         )
 
     names: list[str] = []

@@ -54,7 +54,7 @@ class Part:
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """Content of a mesh file; immutable."""
+    """Mesh of one or more parts, such as the content of a mesh file; immutable."""
 
     parts: tuple[Part, ...]
 

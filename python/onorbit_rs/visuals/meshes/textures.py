@@ -31,7 +31,7 @@ _UP = 4
 
 
 class Companions:
-    """Files to which a mesh refers; has the methods of a trimesh resolver.
+    """Files to which a mesh refers, with the methods of a trimesh resolver.
 
     Only files in the package of the mesh (a folder with ``package.xml`` or ``model.config``) are read or,
     without a package, files in the parent of its folder. Symbolic links are resolved first.

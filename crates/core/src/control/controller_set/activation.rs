@@ -1,4 +1,4 @@
-//! Start and stop of controls during a run, at given times and events and after decided goals.
+//! Starts and stops controls during a run: at given times, at events and when a goal is decided.
 
 use super::ControllerSet;
 use crate::control::check::check_disjoint;

@@ -30,8 +30,8 @@ impl<S: Scalar> ControllerSet<'_, S> {
     /// Returns the index of the control `name` if it accepts a command at `now`, s.
     ///
     /// # Errors
-    /// [`ControlError`] for an invalid command, and for a control that does not exist, does not follow
-    /// commands or has ended.
+    /// [`ControlError`] for a command that is invalid or that requires gains which the law does not have, and
+    /// for a control that does not exist, does not follow commands or has ended.
     pub fn check_send(&self, name: &str, command: &ExternalCommand, now: f64) -> Result<usize, ControlError> {
         let names =
             |list: &mut dyn Iterator<Item = &Control>| list.map(|control| control.name.clone()).collect();
@@ -66,7 +66,8 @@ impl<S: Scalar> ControllerSet<'_, S> {
         self.is_repeated = is_repeated;
     }
 
-    /// Applies the commands that are due at `t`, s. Returns true if the command of a joint has changed.
+    /// Applies the commands and timeouts of the active controls that are due at `t`, s. Returns true if any
+    /// were due.
     pub(super) fn follow_commands(&mut self, t: f64) -> bool {
         let Self { controls, states, same_instant, q, v, .. } = self;
         let mut has_changed = false;

@@ -20,8 +20,8 @@ impl<S: Scalar> ControllerSet<'_, S> {
         &mut self.normal_forces
     }
 
-    /// Checks that every finger of the grip-force laws can be touched. `touching` has the indices of the
-    /// bodies on which contacts may exert normal forces.
+    /// Checks that a contact may exert a normal force on every finger of the grip-force laws. `touching` has
+    /// the indices of the bodies on which contacts may exert normal forces.
     ///
     /// # Errors
     /// [`ControlError::FingerWithoutContact`] for the first finger without a contact.

@@ -179,8 +179,8 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         all.filter(|(_, (_, state))| state.is_running()).map(|(index, (control, _))| (index, &control.law))
     }
 
-    /// Returns the control that drives joint `j` at `t`, s: one that is active or is due to start, or `None`
-    /// if there is no such control.
+    /// Returns the control that drives joint `j` at `t`, s: one that ends after `t` and is active, or whose
+    /// given start time has been reached. Returns `None` if there is no such control.
     pub fn driver_of(&self, j: usize, t: f64) -> Option<&Control> {
         let now = t + self.same_instant;
         let drives = |(control, state): &(&Control, &ControlState)| {
@@ -229,7 +229,8 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
 
     /// Returns the tracking error of a control (index), desired less actual, of length [`Control::width`], at
     /// the time of the last evaluation. It is zero if the control is not active or has not yet been
-    /// evaluated, and for a tracked frame whose error is not needed by the law, a goal or a trace column.
+    /// evaluated. For computed torque of a frame with all joints, the error is also zero unless the control
+    /// has a goal, a shifted reference or a trace column.
     pub fn error(&self, control: usize) -> &[f64] {
         &self.states[control].error
     }
@@ -287,7 +288,7 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
     ///
     /// # Errors
     /// [`ControlError`] for active controls with a joint in common, a reference that is not defined at `t`, a
-    /// load that is not held, or an error of a user-defined controller.
+    /// load that is not held, or a user-defined controller that fails or returns a torque that is not finite.
     pub fn update(
         &mut self,
         t: f64,
@@ -335,7 +336,8 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         true
     }
 
-    /// Computes the torques of several groups of joints; `last` holds the torques of the previous update.
+    /// Computes the torques of all joints from the laws of the active controls; `last` holds the torques of
+    /// the previous update.
     fn torques_of_groups(
         &mut self,
         t: f64,

@@ -1,4 +1,4 @@
-//! Terms of the derivatives, body by body.
+//! Terms of the derivatives of the equations of motion for each body and its subtree.
 
 use crate::dynamics::data::{BodyData, Data};
 use crate::dynamics::jacobian::unit_axes;
@@ -13,7 +13,7 @@ pub struct Derivatives<S> {
     pub(super) bodies: Vec<BodyTerms<S>>,
     /// Nonzero rows of `∂τ/∂q_j` and `∂τ/∂q̇_j`, for one joint at a time.
     joint: Vec<Row<S, 2>>,
-    /// Nonzero rows of `2B e_m`, where `e_m` is a unit angular velocity of the base about axis `m`.
+    /// Rows of `[2B; Sᵀ 2B] e_m`, where `e_m` is a unit angular velocity of the base about axis `m`.
     base: Vec<Row<S, 3>>,
     /// Columns of `Mbm`: `I_C S` about the base origin.
     pub(super) coupling: Vec<Force<S>>,

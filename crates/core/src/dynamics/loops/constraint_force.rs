@@ -40,7 +40,7 @@ pub(crate) fn solve<S: Real>(a: &mut [S], compliance: &[S], scale: &mut [S], x: 
 }
 
 /// Computes the factors `A = L D Lᵀ` in place, in the form that [`cholesky_solve`] expects, with `1/D_ii = 0`
-/// for dependent rows. Returns the number of the other rows.
+/// for dependent rows. Returns the number of independent rows.
 #[inline(always)]
 fn factor<S: Real>(a: &mut [S], m: usize) -> S {
     let mut rank = S::of(0.0);

@@ -34,7 +34,7 @@ use crate::spatial::{Force, InverseArticulated, Real, Vec3};
 use response::Scratch;
 use rows::{JointRows, Row};
 
-/// Constraints of a model with their workspace.
+/// Constraints of the closed loops and mimic joints of a model, with the workspace to solve them.
 #[derive(Clone, Debug)]
 pub struct ClosedLoops<S> {
     closures: Vec<Closure>,
@@ -128,8 +128,8 @@ impl<S: Real> ClosedLoops<S> {
 
     /// Returns the constraint forces `λ` computed last, `(m,)`, N and N m. Those of a loop are the force and
     /// the moment on its second body about the origin of the second frame, along the constrained directions
-    /// of the first frame; that of a distance constraint is the force along the line between the two origins,
-    /// positive if it pushes them apart; that of a mimic joint is its torque (force).
+    /// of the first frame. The force of a distance constraint acts along the line between the two origins and
+    /// is positive if it pushes them apart. A mimic joint has one entry, the torque (force) on this joint.
     pub fn forces(&self) -> &[S] {
         &self.force
     }

@@ -8,7 +8,7 @@ use crate::model::Node;
 use crate::spatial::{ColumnKernel, Force, InverseArticulated, Motion, Real, Vec3};
 use std::any::Any;
 
-/// Quantities of one body in the computation of a response.
+/// Quantities of one body in the computation of the response to constraint forces.
 #[derive(Clone, Copy, Debug, Default)]
 struct Term<R> {
     /// Sum of the forces on the articulated body, about the origin of the body in base axes.
@@ -20,7 +20,7 @@ struct Term<R> {
     rate: R,
 }
 
-/// Buffers for the computation of responses.
+/// Buffers for the computation of responses to constraint forces.
 #[derive(Debug)]
 pub(super) struct Scratch<S> {
     single: Vec<Term<S>>,
@@ -265,7 +265,7 @@ fn respond<S: Real, R: Real>(
         let (parents, own) = terms.split_at_mut(k * groups);
         let parents = &mut parents[node.parent * groups..(node.parent + 1) * groups];
         for (term, parent) in own[..groups].iter_mut().zip(parents) {
-            // u = τ + Sᵀ f;  the parent carries f − U u/D
+            // u = τ + Sᵀ f;  f − U u/D acts on the parent
             let u = term.effort + joint_effort(node, body.axis, term.force);
             term.effort = u;
             let carried = body.u_force.scale_add(-u * body.d_inverse, term.force.from_point(body.offset));

@@ -13,8 +13,8 @@ pub(super) struct Row<S> {
     pub(super) efforts: [S; 2],
 }
 
-/// Buffers for the computation of the constraints on the joints, which allocates them when it is first
-/// called.
+/// Buffers of [`ClosedLoops::joint_constraints`](super::ClosedLoops::joint_constraints), which allocates them
+/// when it is first called.
 #[derive(Clone, Debug, Default)]
 pub(super) struct JointRows<S> {
     /// `J`, row major `(m, nv)`.

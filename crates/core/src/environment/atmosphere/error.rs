@@ -1,16 +1,16 @@
 //! Errors of atmosphere models.
 
 use crate::earth::EarthError;
-use crate::number_text::{short, unlike};
+use crate::number_text::{exact, short, unlike};
 
-/// Errors of atmosphere models; each holds the offending numbers.
+/// Errors of atmosphere models.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AtmosphereError {
     /// A position is inside the Earth.
     #[error(
-        "altitude is {altitude} m, which is below the surface; expected at least 0 m above the ellipsoid; end the run \
-         earlier or raise the orbit",
+        "altitude is {altitude} m, which is below the ellipsoid of the Earth; expected at least 0 m; in a \
+         run, raise the orbit or end the run earlier",
         altitude = short(*altitude)
     )]
     BelowSurface {
@@ -34,7 +34,7 @@ pub enum AtmosphereError {
         highest: f64,
     },
     /// A parameter is outside its range.
-    #[error("{name} is {value}; expected {expected}", value = short(*value))]
+    #[error("{name} is {value}; expected {expected}", value = exact(*value))]
     Value {
         /// Name of the parameter.
         name: &'static str,
@@ -61,8 +61,8 @@ pub enum AtmosphereError {
     NoLayers,
     /// A table of space weather lacks a value that the run requires.
     #[error(
-        "space weather: {name} of {date} is missing from {table}, but the run requires it; give a complete \
-         table or constants"
+        "space weather: {name} of {date} is missing from {table}, but is required; give a complete table \
+         or constants"
     )]
     MissingSpaceWeather {
         /// Name of the table.

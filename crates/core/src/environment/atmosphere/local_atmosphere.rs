@@ -21,8 +21,8 @@ const GRID: (f64, f64) = (128.0, 0.125);
 /// Altitude difference from which the scale height is computed, m.
 const RISE: f64 = 100.0;
 
-/// Density near a point `r₀`: `ρ(r) = ρ₀ exp(-κ û·(r - r₀))` with the density `ρ₀` and the inverse scale
-/// height `κ` at `r₀` and the upward unit vector `û`.
+/// Density near a point `r₀`: `ρ(r) = ρ₀ exp(-κ û·(r - r₀))` with the density `ρ₀`, kg/m³, and the inverse
+/// scale height `κ`, 1/m, at `r₀`, and the upward unit vector `û`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LocalAtmosphere {
     time: f64,
@@ -40,8 +40,8 @@ impl LocalAtmosphere {
     /// Computes the local atmosphere about `centre`, axes of `I`, m, at simulation time `time`, s.
     ///
     /// # Errors
-    /// The errors of [`AtmospherePoint::new`] and of the model at the centre; if the model fails both 100
-    /// m above and 100 m below the centre, the error below it.
+    /// The errors of [`AtmospherePoint::new`] and of the model at the centre; the error of the model 100 m
+    /// below the centre if it is defined neither there nor 100 m above the centre.
     pub fn new(
         atmosphere: &dyn Atmosphere,
         earth: &Earth,

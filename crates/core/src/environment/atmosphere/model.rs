@@ -22,7 +22,7 @@ pub trait Atmosphere: Send + Sync + std::fmt::Debug {
 /// simulation times, s. All arrays are `(n,)`.
 ///
 /// # Errors
-/// The error of the first point at which the model is not defined.
+/// The error of the first point that is invalid or at which the model is not defined.
 pub fn densities_over(
     atmosphere: &dyn Atmosphere,
     earth: &Earth,
@@ -41,7 +41,7 @@ pub fn densities_over(
 /// m, and simulation times `(n,)`, s.
 ///
 /// # Errors
-/// The error of the first point at which the model is not defined.
+/// The error of the first point that is inside the Earth or at which the model is not defined.
 pub fn densities_at(
     atmosphere: &dyn Atmosphere,
     earth: &Earth,

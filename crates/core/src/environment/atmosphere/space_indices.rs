@@ -7,8 +7,9 @@ use super::error::AtmosphereError;
 pub enum MagneticActivity {
     /// Mean of the index `Ap` over the day.
     Daily(f64),
-    /// Recent history: `Ap` of the day; `ap` of the current three hours and of those 3, 6 and 9 h earlier;
-    /// the means of `ap` from 12 to 33 h and from 36 to 57 h earlier.
+    /// Recent history: `Ap` of the day, `ap` of the current three-hour interval and of the intervals 3, 6
+    /// and 9 h earlier, and the means of `ap` over the intervals from 12 to 33 h and from 36 to 57 h
+    /// earlier.
     History([f64; 7]),
 }
 

@@ -36,7 +36,7 @@ impl SpaceWeatherTable {
     ///
     /// # Errors
     /// [`AtmosphereError::Table`], with the number of the line, for a table without rows, a missing
-    /// column, field or day, an invalid date, or a value out of range.
+    /// column, field or day, an invalid date, or a value that is not a number in its range.
     pub fn from_csv(text: &str) -> Result<Self, AtmosphereError> {
         let wrong = |line: usize, problem: String| AtmosphereError::Table { line: line + 1, problem };
         let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
@@ -67,8 +67,9 @@ impl SpaceWeatherTable {
                 ));
             }
             let field = |k: usize| fields.get(k).copied().unwrap_or("");
-            let day = day_of(field(date))
-                .ok_or_else(|| wrong(line, format!("'{}' is not a date such as 2024-03-01", field(date))))?;
+            let day = day_of(field(date)).ok_or_else(|| {
+                wrong(line, format!("DATE is '{}'; expected a date such as 2024-03-01", field(date)))
+            })?;
             if days.is_empty() {
                 first = day;
             } else if day != first + days.len() as i64 {

@@ -62,8 +62,8 @@ impl Surfaces {
         let layout = BlockLayout::new(counts);
         let mut surfaces = vec![None; layout.block_count() * WIDTH];
         for Covering { body, surface } in coverings {
-            let count = layout.body_count();
-            let row = layout.row(body).ok_or(SurfaceError::UnknownBody { body, count })?;
+            let unknown = || SurfaceError::UnknownBody { body, known: layout.known(body.system) };
+            let row = layout.row(body).ok_or_else(unknown)?;
             if surfaces[row].replace(surface).is_some() {
                 return Err(SurfaceError::Twice { body });
             }

@@ -1,14 +1,14 @@
 //! Errors of surfaces.
 
 use crate::environment::body_index::BodyIndex;
-use crate::number_text::{count, indices, list, short};
+use crate::number_text::{count, exact, list};
 
-/// Errors of surfaces; each holds the offending value.
+/// Errors of surfaces.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SurfaceError {
-    /// An area, a length or a coefficient is negative, infinite or NaN.
-    #[error("{name} is {value}; expected {expected}", value = short(*value))]
+    /// An area, distance, radius, flux or coefficient is outside its accepted range.
+    #[error("{name} is {value}; expected {expected}", value = exact(*value))]
     Value {
         /// Name of the input.
         name: &'static str,
@@ -19,9 +19,9 @@ pub enum SurfaceError {
     },
     /// A surface reflects more light than it receives.
     #[error(
-        "specular {specular} and diffuse {diffuse} add up to more than 1; their sum, the reflected \
-         fraction, must be at most 1",
-        specular = short(*specular), diffuse = short(*diffuse)
+        "the reflected fractions, specular {specular} and diffuse {diffuse}, add up to more than 1; reduce \
+         one of them, so that their sum is at most 1",
+        specular = exact(*specular), diffuse = exact(*diffuse)
     )]
     Reflection {
         /// Fraction of the light that is reflected specularly.
@@ -65,14 +65,13 @@ pub enum SurfaceError {
     },
     /// A body has no visual geometry from which faces can be derived.
     #[error(
-        "{body} has no visual geometry from which faces can be derived; give it plates or a cannonball, or remove it \
-         from the surfaces"
+        "{body} has no visual geometry from which faces can be derived; give plates or a cannonball instead"
     )]
     NoShape {
-        /// Name of the body, or `the robot`.
+        /// Body, such as `the body 'hand'`, or `the robot`.
         body: String,
     },
-    /// The visual geometry is a mesh.
+    /// The visual geometry of a link is a mesh.
     #[error(
         "the visual geometry of link '{link}' is the mesh '{filename}', from which no faces are derived; give the \
          link plates or a cannonball"
@@ -83,14 +82,16 @@ pub enum SurfaceError {
         /// Path of the file.
         filename: String,
     },
-    /// The visual geometry of a link is a shape that only collisions use.
+    /// The visual geometry of a link is a cone, a torus, a half-space or a hull.
     #[error(
-        "the visual geometry of link '{link}' is a cone, a torus, a half-space or a hull, from which no faces are derived; \
-         give the link plates or a cannonball"
+        "the visual geometry of link '{link}' is {kind}, from which no faces are derived; give the link \
+         plates or a cannonball"
     )]
     Shape {
         /// Name of the link.
         link: String,
+        /// Kind of the geometry with its article, such as `a cone`.
+        kind: &'static str,
     },
     /// A body has more than one surface.
     #[error("{body} has two surfaces; give each body at most one surface")]
@@ -99,15 +100,12 @@ pub enum SurfaceError {
         body: BodyIndex,
     },
     /// A surface is assigned to a body that does not exist.
-    #[error(
-        "a surface is on {body}, but the robot has {known}; give one of these indices",
-        known = indices(*count, "body")
-    )]
+    #[error("a surface is on {body}, but {known}")]
     UnknownBody {
         /// Given body.
         body: BodyIndex,
-        /// Number of bodies that exist.
-        count: usize,
+        /// Bodies that exist, as text with the suggested fix.
+        known: String,
     },
 }
 

@@ -8,7 +8,7 @@ use crate::spatial::{Real, Vec3};
 /// Two opposite faces of a box, or the two ends of a cylinder, in body axes with positions from the centre of
 /// mass.
 ///
-/// A stream strikes exactly one of the two faces, because `n·u`, with the normal `n` and the velocity `u`
+/// A stream strikes at most one of the two faces, because `n·u`, with the normal `n` and the velocity `u`
 /// relative to the atmosphere, is equal at both centroids: they differ by a multiple of `n`, and
 /// `n·(w × n) = 0` for every angular velocity `w`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

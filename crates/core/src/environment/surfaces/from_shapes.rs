@@ -76,7 +76,13 @@ impl ShapePose {
                 return Err(SurfaceError::Mesh { link, filename });
             }
             Geometry::Cone { .. } | Geometry::Torus { .. } | Geometry::HalfSpace | Geometry::Hull { .. } => {
-                return Err(SurfaceError::Shape { link: frame.name.clone() });
+                let kind = match geometry {
+                    Geometry::Cone { .. } => "a cone",
+                    Geometry::Torus { .. } => "a torus",
+                    Geometry::HalfSpace => "a half-space",
+                    _ => "a convex hull",
+                };
+                return Err(SurfaceError::Shape { link: frame.name.clone(), kind });
             }
         }
         Ok(())

@@ -7,6 +7,7 @@ use super::optics::Optics;
 use super::parts::Parts;
 use super::sphere::Sphere;
 use crate::model::{Frame, Model, Node};
+use crate::number_text::choice;
 use crate::spatial::Vec3;
 use nalgebra::Vector3;
 
@@ -54,7 +55,9 @@ impl Surface {
         node_of(model, body)?;
         let parts = parts_of_body(model, body, &optics)?;
         if parts.is_empty() {
-            return Err(SurfaceError::NoShape { body: model.body_frame(body).name.clone() });
+            return Err(SurfaceError::NoShape {
+                body: format!("the body '{}'", model.body_frame(body).name),
+            });
         }
         let drag_coefficient = not_negative("drag_coefficient", drag_coefficient)?;
         Ok(Self { parts, drag_coefficient, optics })
@@ -106,6 +109,6 @@ impl Surface {
 
 /// Returns the node of the body with index `body`, or an error if there is none.
 fn node_of(model: &Model, body: usize) -> Result<&Node, SurfaceError> {
-    let count = model.nodes().len();
-    model.nodes().get(body).ok_or(SurfaceError::UnknownBody { body: body.into(), count })
+    let known = || format!("the robot has {}", choice(model.nodes().len(), "body"));
+    model.nodes().get(body).ok_or_else(|| SurfaceError::UnknownBody { body: body.into(), known: known() })
 }

@@ -12,7 +12,9 @@ use std::collections::{HashMap, HashSet};
 /// XML element of a link, with the name of the link.
 pub(super) type NamedLink<'a> = (&'a str, Element<'a>);
 
-/// Builds the robot from the root outward, with branches in the order of the file.
+/// Returns a builder to which the links and joints were added from the root outward, with branches in the
+/// order of the file. A massless root whose only joint is a floating one represents the world and is left
+/// out.
 pub(super) fn assemble(
     name: &str,
     links: &[NamedLink<'_>],

@@ -87,7 +87,7 @@ pub enum UrdfProblem {
     #[error("the text is not XML ({reason}); correct the text at this line")]
     NotXml { reason: String },
     #[error(
-        "entity '&{name};' is not supported; replace the entity by its definition in the document type (<!DOCTYPE>)"
+        "entity '&{name};' is not supported; replace the entity by the text that <!DOCTYPE> defines for it"
     )]
     Entity { name: String },
     #[error("the outermost element is <{found}>; expected <robot>{}", other_format(.found))]
@@ -134,8 +134,7 @@ pub enum UrdfProblem {
         .joints[0], .joints[1]
     )]
     TwoParents { link: String, joints: [String; 2] },
-    #[error("the links {} form a closed loop; remove a joint, so that all links descend from one root link, and \
-         close the loop with 'loops' in the scenario (in Python: Model.with_loops)", list(.links))]
+    #[error("{}", loop_text(.links))]
     Loop { links: Vec<String> },
     #[error(
         "{} links are not children of joints: {}; connect all of them except the root by joints",
@@ -144,6 +143,20 @@ pub enum UrdfProblem {
     ManyRoots { roots: Vec<String> },
     #[error(transparent)]
     Model(#[from] ModelError),
+}
+
+/// Returns the message about links that form a closed loop, or about a link that is its own parent.
+fn loop_text(links: &[String]) -> String {
+    match links {
+        [link] => {
+            format!("link '{link}' is both parent and child of a joint; give the joint two different links")
+        }
+        _ => format!(
+            "the links {} form a closed loop; remove a joint, so that all links descend from one root link, and \
+             close the loop with 'loops' in the scenario (in Python: Model.with_loops)",
+            list(links)
+        ),
+    }
 }
 
 fn other_format(found: &str) -> &'static str {

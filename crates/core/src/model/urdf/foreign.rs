@@ -81,7 +81,7 @@ impl<'a> Ignored<'a> {
             names.sort();
             names.dedup();
             names.retain(|name| *name != tag(*first));
-            let more = if names.is_empty() { String::new() } else { format!(" (as are {})", list(&names)) };
+            let more = if names.is_empty() { String::new() } else { format!(" (also: {})", list(&names)) };
             notes.push(format!(
                 "line {}: {} {what} and is ignored{more}; {fix} if it describes the robot",
                 line(*first),
@@ -98,8 +98,8 @@ impl<'a> Ignored<'a> {
         names.clone().all(defines) && names.any(|name| name == "macro")
     }
 
-    /// Returns an error that names the ignored elements if the robot is incomplete without them; otherwise
-    /// returns `error`.
+    /// Returns a more specific error if `error` means that the robot is incomplete and the file contains
+    /// xacro tags, or links or joints with a prefix. Otherwise returns `error`.
     pub(super) fn explain(&self, error: UrdfError) -> UrdfError {
         let is_incomplete = matches!(
             *error.problem,

@@ -14,8 +14,8 @@ use urdf_rs::{JointLimit, JointType, Mimic as MimicOf};
 /// Reads the origin, axis, limits, damping, friction, rotor inertia, spring and mimic coupling of a joint, as
 /// far as they apply to its type.
 ///
-/// A joint with several degrees of freedom becomes a chain of joints with one degree of freedom each.
-/// `is_taken` returns true for names that already occur in the file.
+/// A joint with several degrees of freedom is replaced by a chain of joints with one degree of freedom each,
+/// and a warning is added. `is_taken` returns true for names that already occur in the file.
 pub(super) fn read_joints(
     joint: &JointElement<'_>,
     is_taken: impl Fn(&str) -> bool,

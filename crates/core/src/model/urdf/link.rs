@@ -69,7 +69,7 @@ fn read_inertial(element: Element<'_>, context: &mut ReadContext<'_>) -> Result<
     match element.child("inertia") {
         None if mass.value != 0.0 => {
             note(format!(
-                "{owner} has a mass but no <inertia>; it is read as a point mass; add an <inertia> if the link has an extent"
+                "{owner} has a mass but no <inertia> and is read as a point mass; add an <inertia> if the link is not a point"
             ));
         }
         None => {}

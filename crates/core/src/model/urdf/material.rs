@@ -1,4 +1,4 @@
-//! Reader of `<material>`: colours, which are defined once and which shapes refer to by name.
+//! Reader of `<material>`, which defines a colour of one shape or a named colour for several shapes.
 
 use super::element::Element;
 use super::error::UrdfError;
@@ -12,7 +12,7 @@ pub(super) struct Materials<'a> {
 
 impl<'a> Materials<'a> {
     /// Collects the materials defined in `<robot>`, followed by those defined inside visuals, because in some
-    /// files other visuals refer to the latter.
+    /// files other visuals refer to the latter. The first definition of a name applies.
     pub(super) fn new(robot: Element<'a>) -> Self {
         let nested = robot
             .children("link")
@@ -27,8 +27,9 @@ impl<'a> Materials<'a> {
         Self { named }
     }
 
-    /// Returns the colour of a visual's material: the colour given there, or else the colour defined
-    /// elsewhere under the same name, if there is one.
+    /// Returns the colour of the material of a shape: red, green, blue and opacity, each from 0 to 1. It is
+    /// the colour given there, or else the colour defined elsewhere under the same name; `None` if there is
+    /// neither.
     pub(super) fn rgba(&self, material: urdf_rs::Material) -> Result<Option<[f64; 4]>, UrdfError> {
         let named = || self.named.get(material.name.as_str()).map(|color| color.read::<Color>());
         let color = material.color.map(Ok).or_else(named).transpose()?;

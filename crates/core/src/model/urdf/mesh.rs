@@ -17,7 +17,7 @@ pub(super) struct Meshes<'a> {
     /// True for each folder that exists; cached to avoid a system call for each file in a missing folder.
     folders: HashMap<PathBuf, bool>,
     near: Near<'a>,
-    /// For each file that was found, the name of the package in the reference to it.
+    /// For each file that was found for a reference to a package, the name of that package.
     taken: HashMap<String, String>,
     missing: Vec<String>,
     guessed: Vec<(String, String)>,
@@ -44,8 +44,8 @@ impl<'a> Meshes<'a> {
         }
     }
 
-    /// Returns the path of a mesh file. If it does not exist, returns `name` unchanged and records the file
-    /// as missing.
+    /// Returns the path of the mesh file `name`, and records it if its location was guessed. If no file is
+    /// found, returns `name` unchanged and records the file as missing.
     pub(super) fn resolve(&mut self, name: &str) -> String {
         match self.look_up(name) {
             Some(Found { path, is_guess: false }) => path,
@@ -64,7 +64,7 @@ impl<'a> Meshes<'a> {
         }
     }
 
-    /// Returns the path of a mesh file if it exists. A missing file is not recorded.
+    /// Returns the path of a mesh file if it is found. Missing files and guessed locations are not recorded.
     pub(super) fn find(&mut self, name: &str) -> Option<String> {
         self.look_up(name).map(|found| found.path)
     }
@@ -86,7 +86,8 @@ impl<'a> Meshes<'a> {
             }
             _ => "; copy the missing files into a folder 'meshes' beside the robot's file".to_owned(),
         };
-        Some(format!("{files} not found, the first being '{first}'; simpler shapes are drawn instead{hint}"))
+        let such = if self.missing.len() == 1 { ":" } else { ", the first being" };
+        Some(format!("{files} not found{such} '{first}'; simpler shapes are drawn instead{hint}"))
     }
 
     fn about_guessed(&self) -> Option<String> {
@@ -151,7 +152,8 @@ impl<'a> Meshes<'a> {
     }
 
     /// Returns true unless the file was already found for a reference that names another package, because two
-    /// packages may both contain `meshes/base.stl`.
+    /// packages may both contain `meshes/base.stl`. A file that is found for the first time is recorded for
+    /// the package.
     fn is_free(&mut self, path: &str, name: &MeshName) -> bool {
         let MeshName::InPackage { package, .. } = name else { return true };
         self.taken.entry(path.to_owned()).or_insert_with(|| package.clone()) == package
@@ -228,7 +230,7 @@ mod tests {
         assert_eq!(found.resolve("package://arm/meshes/visual/arm.dae"), arm);
         assert_eq!(found.resolve("file:///home/me/ws/src/arm/meshes/visual/arm.dae"), arm);
         assert_eq!(found.resolve("file://my%20bus.obj"), bus);
-        assert_eq!(found.warnings().next(), None, "their folders speak for them");
+        assert_eq!(found.warnings().next(), None, "folders in their names match, so there is no warning");
         assert_eq!(found.resolve("package://arm/stl/hand.stl"), hand);
         let guesses: Vec<_> = found.warnings().map(|warning| warning.to_string()).collect();
         assert!(guesses.len() == 1 && guesses[0].contains("'package://arm/stl/hand.stl'"), "{guesses:?}");

@@ -49,7 +49,7 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Options<'a> {
     /// Folders that are ROS packages or contain ROS packages. They are searched for `package://` meshes
-    /// before the parent folders of the URDF.
+    /// before the folder of the URDF and its parents.
     pub packages: &'a [PathBuf],
     /// Inertial values that replace those in the file before the robot is checked.
     pub changes: &'a [LinkChange],
@@ -57,8 +57,10 @@ pub struct Options<'a> {
     pub is_part: bool,
 }
 
-/// Loads a robot with a floating root link from the URDF file `path`. If a mesh file is not found, its name
-/// is kept and a warning is added.
+/// Loads a robot with a floating root link from the URDF file `path`.
+///
+/// If the mesh file of a visual shape is not found, its name is kept and a warning is added. A collision
+/// shape whose mesh file is not found is skipped without a warning ([`Model::skipped_collisions`]).
 ///
 /// # Errors
 /// [`UrdfError`] with the file and, as far as they are known, the line and the name of the link or joint.

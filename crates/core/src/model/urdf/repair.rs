@@ -9,16 +9,21 @@ use super::tokens::{Kind, Token, tokens};
 use crate::model::ModelWarning;
 use std::ops::Range;
 
-/// Returns `xml` converted to well-formed XML, and a warning if elements outside the robot were removed.
+/// Returns the malformed text `xml` rewritten as XML, and a warning if elements outside the robot were
+/// removed.
 ///
-/// The conversion makes these changes:
+/// The main changes are:
 ///
-/// - only the outermost `<robot>`, or else the first element, is kept; text after the first zero byte is
-///   dropped;
-/// - comments, processing instructions, document types and characters that XML forbids are removed;
+/// - only the first outermost `<robot>`, or else the first element, is kept; text after the first zero byte
+///   is dropped;
+/// - comments, processing instructions and document types are removed, except for their line breaks;
+/// - characters that XML forbids are replaced by spaces;
 /// - `&` and `<` that are not markup are escaped;
 /// - attributes are separated by spaces;
 /// - every prefix is declared, each with a separate namespace.
+///
+/// The result is not well-formed if, for example, a closing tag is missing; the parser then reports the
+/// fault.
 ///
 /// # Errors
 /// [`UrdfProblem::Entity`] if the text uses an entity that the document type defines.
@@ -42,7 +47,8 @@ pub(super) fn repair(xml: &str) -> Result<(String, Option<ModelWarning>), UrdfEr
     Ok((writer.finish(), note))
 }
 
-/// Returns the byte range of the robot's element, with a warning about elements outside that range.
+/// Returns the byte range of the first outermost `<robot>` or, without one, of the first element. If there
+/// are further elements outside that range, also returns a warning that names the first of them.
 fn outermost(xml: &str) -> (Range<usize>, Option<ModelWarning>) {
     let (mut depth, mut found) = (0_usize, Vec::new());
     for token in tokens(xml).filter(Token::is_tag) {

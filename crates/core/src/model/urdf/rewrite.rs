@@ -38,7 +38,8 @@ impl<'a> Writer<'a> {
         Ok(())
     }
 
-    /// Writes a text with markup characters replaced by references. References that XML predefines are kept.
+    /// Writes a text with markup characters replaced by references, and a space in place of each character
+    /// that XML forbids. References that XML predefines are kept.
     pub(super) fn escaped(&mut self, text: &str) -> Written {
         for (at, c) in text.char_indices() {
             match c {
@@ -55,7 +56,8 @@ impl<'a> Writer<'a> {
         Ok(())
     }
 
-    /// Writes a tag with a space before each attribute, but without declarations of prefixes.
+    /// Writes a tag with a space before each attribute, but without declarations of prefixes. A closing tag
+    /// is written without attributes.
     pub(super) fn tag(&mut self, tag: &Token<'a>) -> Written {
         let (name, mut rest) = tag.split_name();
         self.out.push_str(if tag.kind == Kind::Close { "</" } else { "<" });
@@ -90,7 +92,8 @@ impl<'a> Writer<'a> {
         self.plain(rest)
     }
 
-    /// Writes a name. Only its first colon separates a prefix; further colons become underscores.
+    /// Writes a name. Only its first colon separates a prefix; further colons become underscores. All colons
+    /// do if the prefix is empty, `xml` or `xmlns`.
     fn name(&mut self, name: &'a str) -> Written {
         let is_free = |prefix: &str| !matches!(prefix, "" | "xml" | "xmlns");
         let split = name.split_once(':').filter(|(prefix, local)| is_free(prefix) && !local.is_empty());
@@ -104,7 +107,7 @@ impl<'a> Writer<'a> {
         self.plain(&local.replace(':', "_"))
     }
 
-    /// Returns the written text, with all prefixes declared in the outermost tag.
+    /// Returns the written text, with its prefixes, at most [`MOST_PREFIXES`], declared in the outermost tag.
     pub(super) fn finish(mut self) -> String {
         let declare = |prefix: &&str| format!(" xmlns:{prefix}=\"urn:prefix:{prefix}\"");
         let declared: String = self.prefixes.iter().take(MOST_PREFIXES).map(declare).collect();
@@ -131,7 +134,8 @@ fn reference(text: &str) -> Option<&str> {
     (!name.is_empty() && end.starts_with(';')).then_some(name)
 }
 
-/// Returns true if XML predefines the reference `name`.
+/// Returns true if XML predefines the reference `name`, such as `amp`, or if the reference is the number of a
+/// character that XML permits, such as `#65`.
 fn is_known(name: &str) -> bool {
     let code = match (name.strip_prefix("#x"), name.strip_prefix('#')) {
         (Some(digits), _) => u32::from_str_radix(digits, 16),

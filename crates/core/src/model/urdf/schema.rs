@@ -15,7 +15,7 @@ pub(super) enum Kind {
     Numbers(usize),
     /// A given number of positive, finite numbers, such as edge lengths or a radius.
     Sizes(usize),
-    /// A finite number, or `inf` for no limit.
+    /// A finite number, or `inf` or `-inf` for no limit.
     Limit,
 }
 use Kind::{Limit, Name, Numbers, Sizes, Text};
@@ -24,7 +24,8 @@ use Kind::{Limit, Name, Numbers, Sizes, Text};
 /// text, the default of urdf-rs applies; if urdf-rs has no default, the attribute is required.
 pub(super) type Attribute = (&'static str, Kind, Option<&'static str>);
 
-/// Returns those attributes of the elements with the name `tag` that are read.
+/// Returns the attributes of the elements with the name `tag` that are read into types of urdf-rs.
+/// Extensions, such as `quat_xyzw`, are not among them.
 pub(super) fn attributes(tag: &str) -> &'static [Attribute] {
     match tag {
         "joint" => &[("name", Name, None), ("type", Text, None)],

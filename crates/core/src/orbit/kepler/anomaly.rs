@@ -62,7 +62,7 @@ pub(super) fn mean_from_eccentric(e: f64, one_minus_e: f64, eccentric: f64) -> f
     one_minus_e * eccentric + e * x_minus_sin(eccentric, eccentric.sin())
 }
 
-/// Returns the mean anomaly `M = (e - 1) H + e (sinh H - H)` of a hyperbola.
+/// Returns the mean anomaly `M = (e - 1) H + e (sinh H - H)` of a hyperbola, rad.
 pub(super) fn mean_from_hyperbolic(e: f64, e_minus_one: f64, hyperbolic: f64) -> f64 {
     e_minus_one * hyperbolic + e * sinh_minus_x(hyperbolic, hyperbolic.sinh())
 }
@@ -91,12 +91,12 @@ pub(super) fn solve_ellipse<S: Real>(e: S, one_minus_e: S, mean: S) -> HalfAnoma
     }
 }
 
-/// Solves Kepler's equation of a nearly circular orbit for `δ = E - M`, in half the time of
-/// [`solve_any_ellipse`].
+/// Solves Kepler's equation of a nearly circular orbit, in half the time of [`solve_any_ellipse`], and
+/// returns the sine and cosine of `E/2`.
 ///
-/// Two steps use the reverted series of `f = δ - e sin(M + δ)`. The first step starts at `δ = 0`; its result
-/// `δ = x - x³/2` with `x = e sin M/(1 - e cos M)` is of second order and has an error below 1e-5 rad. The
-/// second step is of third order and reduces the error to rounding.
+/// The unknown is `δ = E - M`. Two steps use the reverted series of `f = δ - e sin(M + δ)`. The first step
+/// starts at `δ = 0`; its result `δ = x - x³/2` with `x = e sin M/(1 - e cos M)` is of second order and has
+/// an error below 1e-5 rad. The second step is of third order and reduces the error to rounding.
 ///
 /// Source of the series: Abramowitz and Stegun, Handbook of Mathematical Functions, 1964, eq. 3.6.25.
 #[inline(always)]

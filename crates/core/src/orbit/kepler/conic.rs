@@ -10,8 +10,8 @@ use crate::orbit::OrbitError;
 use crate::orbit::error::positive;
 use crate::spatial::Real;
 
-/// Size and shape of a conic. Each field has full relative accuracy; in particular, `1 - e` is not computed
-/// from `e`.
+/// Size and shape of a conic. Each field has full relative accuracy. `1 - e` is stored as well,
+/// because its computation from a rounded `e` would lose digits near a parabola.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Shape {
     /// Eccentricity `e`.
@@ -81,7 +81,7 @@ pub(super) struct Period {
 /// Largest number of whole periods that are subtracted exactly.
 const MOST_PERIODS: f64 = 67_108_864.0;
 
-/// Longest time that can be evaluated on an open orbit, s: twice the age of the universe.
+/// Longest time that can be evaluated on an open orbit, s: more than twice the age of the universe.
 const LONGEST_TIME: f64 = 1e18;
 
 impl Period {
@@ -120,7 +120,7 @@ pub(super) enum Conic {
     },
     /// Parabola, `e = 1`; the phase is the time since periapsis, s.
     Parabola {
-        /// Rate of `B` in Barker's equation, `√(μ/(2 q³))`, rad/s.
+        /// Rate of `B` in Barker's equation, `√(μ/(2 q³))`, 1/s.
         n: f64,
         /// Half the speed at periapsis, `√(μ/(2 q))`, m/s.
         speed: f64,

@@ -20,9 +20,9 @@ impl Kepler {
     /// Circular and equatorial orbits are not singular.
     ///
     /// # Errors
-    /// [`OrbitError::NotFinite`] and [`OrbitError::TooLarge`] for invalid numbers,
-    /// [`OrbitError::NotPositive`] for `mu`, and [`OrbitError::Rectilinear`] if `r` or `v` is zero or if the
-    /// two are parallel within 1e-10 rad.
+    /// [`OrbitError::NotFinite`], [`OrbitError::TooLarge`] and [`OrbitError::NotPositive`] for invalid
+    /// numbers and for sizes beyond the range of `f64`; [`OrbitError::Rectilinear`] if `r` or `v` is zero or
+    /// if the two are parallel within 1e-10 rad.
     ///
     /// Source: Battin, An Introduction to the Mathematics and Methods of Astrodynamics, AIAA 1999, chapter 3.
     pub fn from_state(r: Vector3<f64>, v: Vector3<f64>, mu: f64) -> Result<Self, OrbitError> {

@@ -146,7 +146,7 @@ impl Kepler {
     }
 
     /// Returns the state on an ellipse in perifocal axes, `dt` s after the epoch; `None` for an open orbit,
-    /// or on a processor without fused multiply-add.
+    /// or if the current instruction set has no fused multiply-add.
     fn perifocal_state_fused(&self, dt: f64) -> Option<PerifocalState> {
         if InstructionSet::current() == InstructionSet::Baseline {
             return None;
@@ -158,8 +158,8 @@ impl Kepler {
         Some(PerifocalState { x: s.x.0, y: s.y.0, vx: s.vx.0, vy: s.vy.0 })
     }
 
-    /// Fills `rows` with states computed on the SIMD lanes of `S`. Groups of instants that contain an invalid
-    /// time are evaluated individually.
+    /// Fills `rows` with states computed on the SIMD lanes of `S`. The instants of a group that contains an
+    /// invalid time are evaluated individually.
     fn fill_in_lanes<S: Real>(&self, times: &[f64], rows: StateRows<'_>) -> Result<(), OrbitError> {
         let (p, q, longest) = (self.p_i.into(), self.q_i.into(), self.conic.longest_time());
         let (p, q) = (Vec3::<S>::of(&p), Vec3::<S>::of(&q));

@@ -34,9 +34,9 @@ impl Kepler {
     /// whose axis is z and whose reference radius is `radius`, m.
     ///
     /// # Errors
-    /// [`OrbitError::NotFinite`], [`OrbitError::TooLarge`] and [`OrbitError::NotPositive`] for `radius`,
-    /// [`OrbitError::OutOfRange`] for an implausible `j2` or radius, and [`OrbitError::NotClosed`] for an
-    /// open orbit.
+    /// [`OrbitError::NotFinite`] and [`OrbitError::TooLarge`] for `j2` and `radius`,
+    /// [`OrbitError::NotPositive`] for `radius`, [`OrbitError::OutOfRange`] for a `j2` beyond ±0.1 or a
+    /// radius below 1e5 m, and [`OrbitError::NotClosed`] for an open orbit.
     pub fn with_secular_j2(self, j2: f64, radius: f64) -> Result<SecularJ2, OrbitError> {
         if finite("j2", j2)?.abs() > 0.1 {
             return Err(OrbitError::OutOfRange {

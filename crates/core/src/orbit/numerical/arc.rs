@@ -14,7 +14,7 @@ const FIRST: f64 = 0.1;
 const SHORTEST: f64 = 1e-9;
 /// Ratio of the length of the next step to the estimated longest length that the tolerance permits.
 const SAFETY: f64 = 0.9;
-/// Smallest and largest ratio of the lengths of successive steps.
+/// Smallest and largest factor by which the length is changed after an accepted or a rejected step.
 const CHANGE: (f64, f64) = (0.25, 2.0);
 /// Largest number of steps on either side of the initial state. They cover years of a low orbit and use 90 MB
 /// of memory.
@@ -78,7 +78,7 @@ impl Arcs {
     }
 
     /// Computes at most `most_steps` steps in each direction towards `times`, s, in the given `field` (see
-    /// [`Arcs::state`]). Returns true if no further step is needed.
+    /// [`Arcs::state`]). Returns true if no further step is needed or possible.
     pub(super) fn prepare(
         &self,
         times: &[f64],

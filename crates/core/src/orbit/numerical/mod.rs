@@ -92,9 +92,10 @@ impl Orbit for Numerical {
     /// Returns the state at simulation time `t`, s, and integrates up to `t` if no stored step contains it.
     ///
     /// # Errors
-    /// [`OrbitError::BelowSurface`] after the time at which the orbit enters the planet,
-    /// [`OrbitError::TooManySteps`] too far from `t₀`, [`OrbitError::StepTooShort`] and
-    /// [`OrbitError::NotFinite`] where the integration fails, and the errors of [`Gravity::acceleration`].
+    /// [`OrbitError::NotFinite`] and [`OrbitError::TooLarge`] for `t`, [`OrbitError::BelowSurface`] beyond
+    /// the time at which the orbit meets the surface of the planet, [`OrbitError::TooManySteps`] too far from
+    /// `t₀`, [`OrbitError::StepTooShort`] where the integration fails, and the errors of
+    /// [`Gravity::acceleration`].
     fn state(&self, t: f64) -> Result<OrbitState, OrbitError> {
         self.arcs.state(finite("time", t)?, |time, r| self.field(time, r))
     }

@@ -51,8 +51,8 @@ impl Regular {
 /// are dimensionless or in rad; multiplied by the chief's `a` they are lengths in m.
 ///
 /// # Errors
-/// [`OrbitError::NotClosed`] for an open orbit, [`OrbitError::Equatorial`] for an equatorial chief, and the
-/// errors of [`Kepler::from_state`].
+/// [`OrbitError::NotClosed`] if an orbit is not an ellipse, [`OrbitError::Equatorial`] for an equatorial
+/// chief, and the errors of [`Kepler::from_state`].
 pub fn relative_elements(
     chief: [&Vector3<f64>; 2],
     deputy: [&Vector3<f64>; 2],
@@ -71,7 +71,7 @@ pub fn relative_elements(
 /// the inverse of [`relative_elements`], with the same units.
 ///
 /// # Errors
-/// The errors of [`relative_elements`], and of [`Kepler::new`] for elements that do not describe an ellipse.
+/// The errors of [`relative_elements`], and those of [`Kepler::new`] for the elements of the deputy.
 pub fn deputy_state(
     chief: [&Vector3<f64>; 2],
     elements: &Vector6<f64>,

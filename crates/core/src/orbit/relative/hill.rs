@@ -60,8 +60,9 @@ const SINGULAR: f64 = 1e-9;
 /// [`hill_transition`] gives.
 ///
 /// # Errors
-/// The errors of [`hill_transition`], and [`OrbitError::NoIntercept`] at times when a component of the
-/// position does not depend on the velocity, such as z after half a period.
+/// The errors of [`hill_transition`]; [`OrbitError::NotFinite`] and [`OrbitError::TooLarge`] for `r`;
+/// [`OrbitError::NoIntercept`] at times when a component of the final position does not depend on the initial
+/// velocity, such as z after half a period.
 pub fn intercept_velocity(n: f64, r: &Vector3<f64>, t: f64) -> Result<Vector3<f64>, OrbitError> {
     r.iter().try_for_each(|&x| finite("position", x).map(drop))?;
     let transition = hill_transition(n, t)?;

@@ -71,8 +71,8 @@ type Convert =
 /// velocities (m/s), (T, 3) each.
 ///
 /// # Errors
-/// The errors of [`to_local`] and [`Orbit::state`]; [`OrbitError::NotFinite`] for a given state that is not
-/// finite; [`OrbitError::WrongLength`] for arrays of the wrong length.
+/// The errors of [`to_local`] and [`Orbit::state`]; [`OrbitError::NotFinite`] and [`OrbitError::TooLarge`]
+/// for a given position or velocity; [`OrbitError::WrongLength`] for arrays of the wrong length.
 pub fn to_local_rows(
     orbit: &dyn Orbit,
     frame: LocalFrame,

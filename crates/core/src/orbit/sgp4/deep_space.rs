@@ -53,7 +53,7 @@ impl DeepSpace {
         Self { bodies, rates, resonance, sidereal }
     }
 
-    /// Adds to `mean` the secular perturbations over `t` minutes since the epoch.
+    /// Adds to `mean` the secular perturbations by Sun, Moon and resonance, `t` minutes after the epoch.
     pub(super) fn add_secular(&self, t: f64, mean: &mut Mean) {
         let [e, i, anomaly, perigee, node] = self.rates;
         mean.e += e * t;

@@ -36,6 +36,9 @@ impl MeanElements {
     /// Reads the entries of a CCSDS Orbit Mean-Elements Message (OMM); `entry` returns the text for a
     /// keyword, or `None` if the message has no such entry. Angles are in deg and the mean motion in rev/day.
     ///
+    /// The entries for the theory, the centre, the frame and the time system may be missing. If they are
+    /// given, they must be SGP4 (or SGP/SGP4), EARTH, TEME and UTC.
+    ///
     /// # Errors
     /// [`ElementSetError::Missing`], [`ElementSetError::Entry`] and [`ElementSetError::Range`] for a missing
     /// or invalid entry.

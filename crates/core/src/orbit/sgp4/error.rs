@@ -15,7 +15,7 @@ pub enum ElementSetError {
         /// Number of columns given, without trailing blanks.
         got: usize,
     },
-    /// A column holds an invalid character or number.
+    /// A field of a TLE holds an invalid character or number.
     #[error("line {line} of the TLE, column {column}, is {got:?}; expected {expected}")]
     Column {
         /// Line number, 1 or 2.
@@ -27,7 +27,7 @@ pub enum ElementSetError {
         /// Description of the expected text.
         expected: &'static str,
     },
-    /// The checksum is wrong.
+    /// The checksum of a line of a TLE differs from the one computed from the line.
     #[error(
         "line {line} of the TLE, column 69: the checksum is {got}, but columns 1 to 68 give {expected}; copy \
          the line again, or accept it with check_checksum=False"
@@ -40,7 +40,7 @@ pub enum ElementSetError {
         /// Checksum computed from columns 1 to 68.
         expected: u8,
     },
-    /// The two lines belong to different satellites.
+    /// The two lines of a TLE belong to different satellites.
     #[error(
         "line 1 of the TLE belongs to satellite {first:?}, but line 2 to satellite {second:?}; give both lines of one \
          satellite"
@@ -51,13 +51,13 @@ pub enum ElementSetError {
         /// Satellite number in line 2.
         second: String,
     },
-    /// An entry of a message is missing.
+    /// An entry of an Orbit Mean-Elements Message (OMM) is missing.
     #[error("the OMM has no entry {key}, which SGP4 requires; add the entry")]
     Missing {
         /// Keyword of CCSDS 502.0-B.
         key: &'static str,
     },
-    /// An entry of a message is invalid.
+    /// An entry of an Orbit Mean-Elements Message (OMM) is invalid.
     #[error("the OMM's {key} is {got:?}; expected {expected}")]
     Entry {
         /// Keyword of CCSDS 502.0-B.
@@ -96,7 +96,7 @@ pub enum Sgp4Error {
     #[error(
         "SGP4 error 1 at t = {time} s: the mean eccentricity is {eccentricity}; it must lie in [-0.001, 1); \
          check the elements, or give elements with an epoch nearer to this time",
-        time = short(*time), eccentricity = short(*eccentricity)
+        time = short(*time), eccentricity = unlike(*eccentricity, &[-0.001, 1.0])
     )]
     MeanEccentricity {
         /// Time since the epoch, s.
@@ -120,7 +120,7 @@ pub enum Sgp4Error {
     #[error(
         "SGP4 error 3 at t = {time} s: the eccentricity perturbed by Sun and Moon is {eccentricity}; it \
          must lie in [0, 1]; check the elements, or give elements with an epoch nearer to this time",
-        time = short(*time), eccentricity = short(*eccentricity)
+        time = short(*time), eccentricity = unlike(*eccentricity, &[0.0, 1.0])
     )]
     PerturbedEccentricity {
         /// Time since the epoch, s.
@@ -179,7 +179,8 @@ fn bounds(range: &RangeInclusive<f64>) -> String {
     format!("{lower} and {upper}")
 }
 
-/// Returns the meaning of an error code of the reference implementation.
+/// Returns the text for an error code of the reference implementation. Codes other than 1 to 4 have the text
+/// "it returned no state".
 fn reason(code: u8) -> &'static str {
     match code {
         1 => "the mean eccentricity is out of range",
@@ -203,7 +204,7 @@ impl Sgp4Error {
         }
     }
 
-    /// Returns the time since the epoch, s.
+    /// Returns the time at which the error occurred, s since the epoch.
     pub fn time(&self) -> f64 {
         match *self {
             Self::MeanEccentricity { time, .. }

@@ -23,9 +23,9 @@ impl Harmonic {
     }
 }
 
-/// Returns the terms for orbits with one revolution per day, which are due to the harmonics (2,2), (3,1) and
-/// (3,3). `n` is the mean motion, rad/min, `a` the reciprocal of the semi-major axis, 1/Earth radii, `e` the
-/// eccentricity and `i` the inclination, rad.
+/// Returns the resonant terms for orbits with one revolution per day, which are due to the harmonics (2,2),
+/// (3,1) and (3,3). `n` is the mean motion, rad/min, `a` the reciprocal of the semi-major axis, 1/Earth
+/// radii, `e` the eccentricity and `i` the inclination, rad.
 pub(super) fn day(n: f64, a: f64, e: f64, i: f64) -> Vec<Harmonic> {
     let ((sin, cos), e2) = (i.sin_cos(), e * e);
     let (g200, g310) = (1.0 + e2 * (-2.5 + 0.8125 * e2), 1.0 + 2.0 * e2);
@@ -43,8 +43,8 @@ pub(super) fn day(n: f64, a: f64, e: f64, i: f64) -> Vec<Harmonic> {
     ]
 }
 
-/// Returns the terms for orbits with two revolutions per day, which are due to harmonics of orders 2 and 4
-/// and degrees 2 to 5. The arguments are those of [`day`].
+/// Returns the resonant terms for orbits with two revolutions per day, which are due to harmonics of orders 2
+/// and 4 and degrees 2 to 5. The arguments are those of [`day`].
 pub(super) fn half_day(n: f64, a: f64, e: f64, i: f64) -> Vec<Harmonic> {
     let (sin, cos) = i.sin_cos();
     let (e2, s2, c2) = (e * e, sin * sin, cos * cos);

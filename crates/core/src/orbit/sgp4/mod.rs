@@ -108,8 +108,8 @@ impl Sgp4 {
         Ok((at.position * 1e3, at.velocity * 1e3))
     }
 
-    /// Fills `rows` with states computed on the SIMD lanes of `S`. Groups of instants that contain an error
-    /// are evaluated individually.
+    /// Fills `rows` with states computed on the SIMD lanes of `S`. If SGP4 returns an error for an instant of
+    /// a group, the instants of this group are evaluated individually.
     fn fill_in_lanes<S: Real>(&self, times: &[f64], rows: StateRows<'_>) -> Result<(), OrbitError> {
         fill_lanes::<S>(
             self,
@@ -178,8 +178,9 @@ impl Orbit for Sgp4 {
     /// Returns the state in TEME axes, `t` s after the epoch.
     ///
     /// # Errors
-    /// [`OrbitError::Sgp4`] where SGP4 has no state, [`OrbitError::NotFinite`] for a `t` that is not finite,
-    /// and [`OrbitError::TimeOutOfRange`] for times more than a hundred years from the epoch.
+    /// [`OrbitError::Sgp4`] if SGP4 has no state or the satellite is below the surface;
+    /// [`OrbitError::NotFinite`], [`OrbitError::TooLarge`] and [`OrbitError::TimeOutOfRange`] for a `t` that
+    /// is not finite or more than a hundred years from the epoch.
     fn state(&self, t: f64) -> Result<OrbitState, OrbitError> {
         let (position, velocity) = self.above_surface(t)?;
         // the step is 16 times shorter if the propagation fails within 90 s of `t`

@@ -10,7 +10,7 @@ use crate::spatial::Real;
 
 /// Perigee height, km, below which the higher-order drag terms are omitted.
 const FINE_PERIGEE: f64 = 220.0;
-/// Eccentricity below which `C₃` and the periodic drag term of the mean anomaly are set to zero.
+/// Eccentricity up to which `C₃` and the periodic drag term of the mean anomaly are set to zero.
 const NEARLY_CIRCULAR: f64 = 1e-4;
 
 /// Mean elements at the epoch, their secular rates, and the coefficients of drag in the report's symbols.

@@ -24,8 +24,8 @@ pub(super) struct OsculatingState<S> {
     pub(super) velocity: Vec3<S>,
 }
 
-/// Returns the state for the mean elements `mean`, the semi-major axis `a`, Earth radii, and the sine and
-/// cosine of the inclination.
+/// Returns the osculating state for the mean elements `mean`, the semi-major axis `a`, Earth radii, and the
+/// sine and cosine of the inclination.
 #[inline(always)]
 pub(super) fn osculating_state<S: Real>(
     mean: &Mean<S>,

@@ -46,8 +46,9 @@ pub(super) struct Rates {
 }
 
 impl Resonance {
-    /// Returns the resonance of an orbit whose period is near one day, or near half a day at an eccentricity
-    /// of 0.5 or more; `None` for other orbits. `sidereal` is the sidereal time at the epoch, rad.
+    /// Returns the resonance of an orbit with a period between 1200 and 1800 min (about one day), or between
+    /// 680 and 760 min (about half a day) at an eccentricity of 0.5 or more; `None` for other orbits.
+    /// `sidereal` is the sidereal time at the epoch, rad.
     pub(super) fn new(mean: &Mean, rates: &Rates, sidereal: f64, earth: &Earth) -> Option<Self> {
         let Mean { n, e, i, node, perigee, anomaly } = *mean;
         let a = (n / earth.ke).powf(2.0 / 3.0); // 1/a

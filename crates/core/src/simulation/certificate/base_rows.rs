@@ -84,7 +84,7 @@ impl BaseRows {
     /// an interval of length `h`, s. They are the changes of the base rows `found` when the mean of the
     /// velocities at the ends of the interval is replaced by the velocity in its middle,
     /// `(v₀ + v₁)/2 − h²/8 ȧ`. The mean of the inertial forces over the interval differs from `found` by a
-    /// third of this change.
+    /// third of this change. Without joints, both errors are zero.
     ///
     /// The jerk of the interval is `ȧ = 2/h ((v₁ − v₀)/h − a₀)`. It includes changes of the acceleration
     /// under constant torques, which can be fast for light links even while a heavy load moves slowly.

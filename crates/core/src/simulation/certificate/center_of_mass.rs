@@ -51,8 +51,8 @@ impl CenterOfMass {
         self.path
     }
 
-    /// Returns the largest gap divided by the sum of the path and the `size` of the robot, m. The quotient of
-    /// a gap that rounding errors explain does not exceed `gate`.
+    /// Returns the largest gap divided by the sum of the path and the `size` of the robot, m. If rounding
+    /// errors explain the gap, the result does not exceed `gate`.
     pub(super) fn error(&self, size: f64, gate: f64) -> f64 {
         relative(self.largest.sqrt(), self.path + size + self.rounding / gate)
     }

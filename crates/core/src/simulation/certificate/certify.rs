@@ -8,7 +8,7 @@ use crate::model::Model;
 use crate::simulation::trace::Trace;
 
 /// Computes the certificate of a run of `model` from the trace of the run. If the trace has no rows, all
-/// errors are zero.
+/// errors of the rows are zero.
 pub fn certify(model: &Model, trace: &Trace) -> Certificate {
     let RowChecks { balance, center, residuals, attitude, is_free, opening, .. } =
         row_checks(model, trace, trace.rows());

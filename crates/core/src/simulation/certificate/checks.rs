@@ -1,4 +1,4 @@
-//! Certificate, its checks and their gates.
+//! Certificate, its checks, and the gates of the checks: the largest values that pass.
 
 use serde::{Deserialize, Serialize};
 
@@ -43,8 +43,9 @@ pub struct Certificate {
     /// `v_com` of the centre of mass (for a single body, of the momentum scale of its rotation) or, if
     /// larger, of `|P|`.
     pub linear_momentum_drift_rel: f64,
-    /// Drift of angular momentum: `max |L − L₀ − ∫T dt|` relative to the largest value of `Σ |Lₖ|`, all about
-    /// the system's centre of mass, with the external moment `T` and the angular momenta `Lₖ` of the bodies.
+    /// Drift of angular momentum: `max |L − L₀ − ∫T dt|`, relative to the largest value of `Σ |Lₖ|` or, if
+    /// larger, to a fraction of the moments of the linear momenta. All are about the system's centre of mass,
+    /// with the external moment `T` and the angular momenta `Lₖ` of the bodies.
     pub angular_momentum_drift_rel: f64,
     /// Error of the energy balance: `max |E − E₀ − W|`, with the kinetic energy `E` and the work `W`,
     /// relative to the sum of `Σ |ΔW|`, the largest energy in the centre-of-mass frame and a thousandth of
@@ -73,7 +74,9 @@ pub struct Certificate {
     pub attitude_step_doubling_rad: Option<f64>,
     /// Difference between the positions and rates after a step and after two half steps, summed over the run,
     /// for the joint with the largest value. Angles are in rad, displacements relative to the robot's size,
-    /// and rates relative to the joint's largest rate. `None` without step doubling or without joints.
+    /// and rates relative to the joint's largest rate. The rate error estimated from the jumps of the
+    /// joint's acceleration between steps is used instead if it is larger. `None` without step doubling or
+    /// without joints.
     pub joint_step_doubling_rel: Option<f64>,
     /// Step-doubling error of the position of the base's origin, relative to the path of the centre of mass
     /// plus the robot's size. `None` without step doubling.
@@ -110,7 +113,8 @@ impl PairChecks {
     }
 }
 
-/// Check of a certificate or of an event: a value and its gate.
+/// Check of a certificate, of an event or of the balance of a group: a value, and the largest value that
+/// passes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Check {
     /// Name of the checked quantity; for a certificate, that of its field.

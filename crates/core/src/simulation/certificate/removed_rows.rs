@@ -53,8 +53,9 @@ pub(super) fn row_checks(model: &Model, trace: &Trace, end: usize) -> RowChecks 
     checks
 }
 
-/// Adds the rows of `trace` with the indices `range`; rows without an acceleration are omitted. The
-/// interval that ends at the first of them is included if there is a row before it.
+/// Adds the rows of `trace` with the indices `range`. The interval that ends at the first of these rows is
+/// included if there is a row before it. The balances and the checks of intervals omit rows without an
+/// acceleration.
 fn add_rows(checks: &mut RowChecks, model: &Model, trace: &Trace, range: Range<usize>) {
     let mut reader = RowReader::new(model, trace);
     let mut base_rows = BaseRows::new(model);

@@ -27,7 +27,7 @@ pub struct RowChecks {
 }
 
 impl RowChecks {
-    /// Creates the sums over no rows.
+    /// Creates the sums and maxima before any row is added.
     pub(super) fn new(model: &Model) -> Self {
         Self {
             balance: Balance::default(),

@@ -9,7 +9,7 @@ use crate::model::{BASE_NV, Model};
 use crate::simulation::trace::Trace;
 use crate::spatial::Vec3;
 
-/// Reader of the rows of a trace.
+/// Reader of the rows of a trace, with the buffers to compute their forces and scales.
 pub(super) struct RowReader<'a> {
     model: &'a Model,
     trace: &'a Trace,
@@ -72,7 +72,7 @@ impl<'a> RowReader<'a> {
 
     /// Returns the jump of the angular acceleration of the base, rad/s², `ω̇⁻ − ω̇⁺`, for efforts `τ` that
     /// jump at row `k`: the base part of `M⁻¹ (τ⁻ − τ⁺)`. Joints that are at rest before and after the row
-    /// are locked.
+    /// are locked. The jump is zero in the first row and without joints.
     fn angular_jump(&mut self, k: usize, q: &[f64]) -> Vec3<f64> {
         let n = self.model.joint_count();
         if k == 0 || n == 0 {

@@ -8,7 +8,7 @@ use crate::simulation::trace::Trace;
 /// the robot's size.
 const REST: f64 = 1e-6;
 
-/// Results of the step-doubling probes of a run.
+/// Model, trace and scales from which the step-doubling errors of a run are computed.
 pub(super) struct StepDoubling<'a> {
     pub(super) model: &'a Model,
     pub(super) trace: &'a Trace,

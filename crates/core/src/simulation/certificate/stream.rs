@@ -10,7 +10,7 @@ use crate::model::Model;
 use crate::simulation::trace::Trace;
 use serde::{Deserialize, Serialize};
 
-/// Checks that compare successive steps, for a run that does not record every step.
+/// Checks that compare successive steps, for a run whose rows are not sufficient for these checks.
 ///
 /// The checks of the attitude and of the centre of mass are sums over the run and use every step. The check
 /// of the base rows is a maximum and uses only the steps for which [`Stream::add_rows`] is called.

@@ -175,7 +175,7 @@ impl Touching {
     }
 
     /// Returns the bristles of pieces that have just touched, for the sliding speed or the rate of turn
-    /// `speed`, m/s or rad/s. The bristles slip if their damping exceeds the limit of friction or, at a
+    /// `speed`, m/s or rad/s. The bristles slip if their damping force exceeds the limit of friction or, at a
     /// touch-down without a force, if their elastic force would grow faster than that limit.
     fn begun(
         &self,

@@ -72,8 +72,8 @@ impl BroadPhase {
         new
     }
 
-    /// Adds to `found` the indices of all pairs that are possibly not far apart during the next `h`, s, and
-    /// of some other pairs, and sorts `found`. Requires the kinematics of `state` in `trees`.
+    /// Adds to `found` the indices of at least those pairs that are not far apart during the next `h`, s, and
+    /// sorts `found`. Requires the kinematics of `state` in `trees`.
     ///
     /// A pair is far apart if `|p_b − p_a| > r_a + r_b + FAR min(r_a, r_b) + TRAVEL h s`, with the origins
     /// `p` of the frames of its sides, the reaches `r`, and the speed `s` of at most

@@ -12,7 +12,7 @@ use crate::spatial::{Real, Vec3};
 impl Contacts {
     /// Prepares the contacts for an external engine, which computes their forces. The contacts still limit
     /// the length of steps and record distances, normals and elastic energies. Touch-down and lift-off are
-    /// not located, so the steps are not graded.
+    /// not located, so the steps are not shortened near them.
     pub(in crate::simulation) fn follow_engine(&mut self) {
         self.has_engine = true;
         self.steps.is_graded = false;

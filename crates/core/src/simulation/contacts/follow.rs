@@ -8,7 +8,8 @@ use crate::simulation::recording::EventRecord;
 
 impl Contacts {
     /// Finds the contacts that begin to touch or separate at `t`, s, and adds records of these events to
-    /// `happened`. Requires the samples and the states of all pairs at `t`.
+    /// `happened`, except for touches after the first 1000 of a contact. Requires the samples and the states
+    /// of all pairs at `t`.
     pub(super) fn update_touches(&mut self, t: f64) {
         let Self { list, states, touches, samples, happened, names, rigid, .. } = self;
         for (contact, (touch, sample)) in touches.iter_mut().zip(samples).enumerate() {
@@ -35,9 +36,9 @@ impl Contacts {
         }
     }
 
-    /// Begins the touches of those contacts with an impact law that touch at `t`, s, but did not touch
-    /// before, and adds records of their touch-downs to `happened`. `points` has all points at which such
-    /// contacts touch.
+    /// Begins the touches of those contacts with an impact law that touch at `t`, s, without separating, but
+    /// did not touch before, and adds records of their touch-downs to `happened`. `points` has all points at
+    /// which such contacts touch.
     pub(super) fn begin_touches(&mut self, t: f64, points: &[TouchedPoint]) {
         for point in points.iter().filter(|point| point.velocity[0] <= ImpactLaw::REST_SPEED) {
             let touching = &self.list[point.number];

@@ -95,8 +95,9 @@ impl Contacts {
     ///
     /// # Errors
     /// [`ContactError::Painleve`] if a sliding point needs a force, but friction would push its pieces into
-    /// each other as fast as the normal force separates them: `W_nn − μ W_nt d ≤ 0` for the direction `d` of
-    /// sliding.
+    /// each other at least as fast as the normal force separates them: `W_nn − μ W_nt d ≤ 0` for the
+    /// direction `d` of sliding; [`ContactError::Unsolved`] if the impulses do not converge;
+    /// [`ContactError::Geometry`] if a distance cannot be computed.
     pub(in crate::simulation) fn correct<S: Real>(
         &mut self,
         hold: &mut Hold,
@@ -171,9 +172,9 @@ impl Contacts {
 }
 
 impl Hold {
-    /// Returns the largest coefficient of friction for which a force exists at the point with index `number`,
-    /// if the point slides, needs a force and has a coefficient that is not smaller; otherwise `None`.
-    /// `reached` has the velocities at the end of a trial step, m/s.
+    /// Returns the smallest coefficient of friction with which no force can keep the pieces apart at the
+    /// point with index `number`, if the point slides, needs a force and has a coefficient that is at least
+    /// as large; otherwise `None`. `reached` has the velocities at the end of a trial step, m/s.
     fn painleve(&self, number: usize, reached: &[f64]) -> Option<f64> {
         let (HeldPoint { law, slip, .. }, n, row) = (&self.points[number], reached.len(), 3 * number);
         let speed = slip[0].hypot(slip[1]);

@@ -54,7 +54,8 @@ use touching::{Loading, Touching};
 /// Number of pairs of pieces up to which bounding spheres cost more time than they save.
 const FEW: usize = 16;
 
-/// Contacts of a run, evaluated for all pairs that consist of a convex piece of each side.
+/// Contacts of a run. Each is evaluated for all pairs that consist of a convex piece of its first side and a
+/// convex piece of its second side.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Contacts {
     list: Vec<Touching>,
@@ -82,7 +83,8 @@ pub(crate) struct Contacts {
     /// True for each declared contact with an impact law.
     rigid: Vec<bool>,
     steps: ContactSteps,
-    /// Largest permitted energy error of the next step, J; infinite without contacts between faces or edges.
+    /// Largest permitted energy error of the next step, J; infinite while no pieces whose forces may jump
+    /// press on each other (see [`Touching::energy`]).
     pub(super) energy_error: f64,
     /// Work of the normal forces that is neither stored nor dissipated, J, at the start of the step and at
     /// the last call of [`Self::margin`].
@@ -205,7 +207,8 @@ impl Contacts {
         self.is_rigid = Vec::new();
     }
 
-    /// Returns the loadings computed last, to restore them after a trial step.
+    /// Returns the loadings (geometry, motions and forces) of the near pairs that were computed last, so that
+    /// they can be restored after a trial step.
     pub(super) fn loadings(&self) -> Vec<Option<Loading>> {
         self.near.iter().map(|&number| self.list[number].last).collect()
     }
@@ -216,8 +219,8 @@ impl Contacts {
         self.near.iter().zip(loadings).for_each(|(&number, loading)| self.list[number].last = loading);
     }
 
-    /// Computes the loading of every contact and adds the forces to the wrenches in `trees`. Requires the
-    /// kinematics of `state` in the trees.
+    /// Computes the forces of all near pairs that touch, and adds them to the external wrenches on the bodies
+    /// of `trees`. Requires the kinematics of `state` in the trees.
     pub(super) fn add_forces<S: Real>(
         &mut self,
         trees: &mut [Tree<'_, S>],

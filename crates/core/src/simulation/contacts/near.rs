@@ -114,7 +114,7 @@ impl Contacts {
         });
     }
 
-    /// Writes the indices of the pairs that are possibly not far apart in the step from `t` to `end`, s, to
+    /// Writes the indices of at least those pairs that are not far apart in the step from `t` to `end`, s, to
     /// `candidates`, and sets the phase of the other pairs to [`Phase::Far`].
     pub(super) fn find_candidates<S: Real>(
         &mut self,

@@ -26,7 +26,7 @@ pub(super) struct Resultant {
     /// Point at which the resultant acts, m, in W.
     pub(super) point: Vec3<f64>,
     /// Force on the second side, N, W axes. For a single point it is along the normal; for several points it
-    /// may be inclined to the normal, because the surfaces are.
+    /// may be inclined to the normal, because the surfaces at these points may be.
     pub(super) on_b: Vec3<f64>,
     /// Moment on the second side about `point`, N m, W axes.
     pub(super) moment: Vec3<f64>,

@@ -34,7 +34,7 @@ impl Touching {
         points.into_iter().any(|point| (point.at - position).norm() < limit)
     }
 
-    /// Returns the largest gap, m, at which points of the pieces touch.
+    /// Returns the largest gap, m, at which points of the pieces count as touching.
     pub(super) fn touching_gap(&self, motions: &[SideMotion; 2]) -> f64 {
         let relative = if self.is_resting() { RESTING } else { TOUCHING };
         relative * self.smaller_reach() + ROUNDINGS * self.rounding(motions)

@@ -10,8 +10,8 @@ use std::f64::consts::PI;
 /// Depth, as a fraction of the smaller reach, to which pieces may overlap at the end of a step in which they
 /// touch, before the instant of the touch-down is located.
 const OVERLAP: f64 = 0.25;
-/// Smallest exponent of the elastic force whose derivatives at zero depth do not limit the order of the
-/// integrator, apart from 1.
+/// Smallest exponent other than 1 of an elastic force whose derivatives at zero depth do not limit the order
+/// of the integrator.
 const SMOOTH: f64 = 4.0;
 /// Smallest number of steps in half a period with which the integration of a contact at rest is stable.
 const LEAST_STEPS: f64 = 8.0;
@@ -86,8 +86,12 @@ impl Touching {
     /// contact and `N` steps. The local error is proportional to the amplitude `a` of the oscillation and to
     /// `N⁻⁵`, so that `N ∝ a^(1/4)` suffices for a contact that comes to rest. For exponents `1 < n < 4`,
     /// derivatives of `xⁿ` are unbounded at touch-down and lift-off, where the step is therefore shortened to
-    /// `h √(x/x_max)`, with the depth `x` and its largest value `x_max` in the present motion. This restores
-    /// order four: the sum of the local errors `h⁵ x^(n−4)` then converges.
+    /// `h √(x/x_max)`, but not below `h π/N`, with the depth `x` and its largest value `x_max` in the present
+    /// motion. This restores order four: the sum of the local errors `h⁵ x^(n−4)` then converges.
+    ///
+    /// While the bodies do not press on each other, they may overlap by at most a quarter of the smaller
+    /// reach at the end of the step. The step is not limited for bodies that are far apart, and for contacts
+    /// with neither compliant forces nor an impact law.
     ///
     /// With an external engine (`has_engine`) the touch-down is not located. A step then extends beyond the
     /// touch-down by at most the length of a step during the impact.
@@ -139,9 +143,9 @@ impl Touching {
         }
     }
 
-    /// Returns the elastic energy at the largest depth of the present motion, J; zero for pieces that do not
-    /// press on each other, and for spheres, whose forces are smooth unless the other piece is a torus: its
-    /// nearest point may then jump along the circle.
+    /// Returns the elastic energy at the largest depth of the present motion, J. Returns zero for pieces that
+    /// do not press on each other, and for a sphere on any piece except a torus, because the force is then
+    /// smooth. The nearest point of a torus may jump along its circle.
     pub(super) fn energy(&self) -> f64 {
         let any = |is: fn(&Shape) -> bool| self.sides.iter().any(|side| is(&side.shape));
         let is_smooth = any(|shape| matches!(shape, Shape::Sphere { .. }))

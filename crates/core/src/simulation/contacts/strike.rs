@@ -258,7 +258,9 @@ fn impulse_of(point: &TouchedPoint, p: &[f64]) -> Vec3<f64> {
 pub(super) fn unsolved<'a>(unsolved: Unsolved, names: impl Iterator<Item = &'a str>) -> ContactError {
     let mut names: Vec<String> = names.map(|name| format!("'{name}'")).collect();
     let points = names.len();
+    names.sort_unstable();
     names.dedup();
-    let contacts = names.join(", ");
+    let noun = if names.len() == 1 { "contact" } else { "contacts" };
+    let contacts = format!("{noun} {}", names.join(", "));
     ContactError::Unsolved { contacts, points, sweeps: MOST_SWEEPS, change: unsolved.change }
 }

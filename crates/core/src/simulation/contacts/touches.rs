@@ -8,7 +8,7 @@ use crate::simulation::recording::{EventKind, EventRecord};
 use crate::spatial::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Largest number of touches of a contact that are events. Later touches are only counted.
+/// Largest number of touches of a contact that are recorded as events. Later touches are only counted.
 const MOST_LISTED: usize = 1000;
 /// Depth, relative to the rounding error of the distance, that a touch must reach to be counted. Rounding
 /// errors make bodies that rest beside each other without a load touch and separate at random.
@@ -41,7 +41,7 @@ pub(in crate::simulation) struct Touch {
     forces: [(f64, f64); 2],
 }
 
-/// Integrals of a contact, summed over its pieces.
+/// Impulses and dissipated energy of a contact, summed over its pairs of pieces.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Integrals {
     /// Impulse on the second side, N s.

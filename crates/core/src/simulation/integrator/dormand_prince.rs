@@ -25,7 +25,7 @@ const SHORT: (f64, usize) = (1e-5, 1000);
 /// requires.
 const LIMITING: f64 = 1e-2;
 
-/// Stages of a step and the step-size control.
+/// Method of Dormand and Prince: the stages of a step and the step-size control.
 #[derive(Clone, Debug)]
 pub(super) struct DormandPrince<S> {
     k: Vec<Rate<S>>,
@@ -82,8 +82,8 @@ impl<S: Real> DormandPrince<S> {
     }
 
     /// Computes a step from the start of `interval` to its end, or to an earlier time if the error would
-    /// otherwise exceed the tolerance. Returns the time reached, s. Requires the kinematics and loads of
-    /// `state` in `equations`.
+    /// otherwise exceed the tolerance or a base would rotate too far. Returns the time reached, s. Requires
+    /// the kinematics and loads of `state` in `equations`.
     ///
     /// Proportional-integral control: `h' = 0.9 h ε^−0.17 ε₋₁^0.04`, where `ε` and `ε₋₁` are the errors of
     /// this step and of the last accepted step, relative to the tolerance.

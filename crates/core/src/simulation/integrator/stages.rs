@@ -7,7 +7,8 @@ use crate::simulation::state::{Rate, State};
 use crate::simulation::tree_state::{TreeRate, TreeState};
 use crate::spatial::{Real, Vec3};
 
-/// States and time derivatives at the stages of a step. The buffers are allocated once per run.
+/// States and time derivatives at the stages of a step. The buffers are allocated at the start of a run, and
+/// again when its trees change.
 pub(crate) struct Stages<S> {
     /// State at the start of the step, with velocities relative to the frames of the step.
     pub(crate) start: State<S>,

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 /// Largest rotation of a base in a step, rad; the rotation vector must remain well below a full turn.
 pub(super) const LARGEST_ROTATION: f64 = 2.0;
 
-/// Lower bound of the scale of rate errors, as a fraction of the largest rate of the run.
+/// Fraction of the largest rate of the run that is added to the scale of rate errors.
 const SLOW: f64 = 1e-3;
 
 /// State of the step-size control, from which a run can resume with bit-identical results.
@@ -38,7 +38,7 @@ pub(crate) struct TreeControl {
     pub(crate) fastest: [f64; 2],
     /// Sum of the estimated attitude errors of all steps, rad.
     pub(crate) rotation_error: f64,
-    /// Radius of gyration of the tree at the start of the run, m, used as the scale of lengths.
+    /// Radius of gyration of the tree at the start of its first step, m, used as the scale of lengths.
     pub(crate) size: f64,
 }
 
@@ -94,7 +94,8 @@ impl Tolerance {
     ///
     /// The tolerance is `ε` times a scale. For the attitude and revolute joints, the scale is 1 rad; for
     /// prismatic joints, the radius of gyration of the tree; for the position of the base, that radius or, if
-    /// larger, the distance from the origin of W; for rates, the magnitude of the rates.
+    /// larger, the distance from the origin of W; for rates, the magnitude of the rates plus a thousandth of
+    /// the largest rate so far.
     pub(super) fn error<S: Real>(
         &self,
         stages: &mut Stages<S>,

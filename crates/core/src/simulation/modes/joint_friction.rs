@@ -87,8 +87,8 @@ impl<S: Real> Tree<'_, S> {
         if down < up { (down, -1.0) } else { (up, 1.0) }
     }
 
-    /// Returns the smallest stick margin of the locked joints, which is negative if a joint should slip.
-    /// Requires the kinematics and loads of `q` and `v` in `data`.
+    /// Returns the smallest stick margin of the locked joints, which is negative if a joint should slip and
+    /// infinite if no joint is locked. Requires the kinematics and loads of `q` and `v` in `data`.
     pub(super) fn least_stick_margin(&mut self, q: &[S], v: &[S]) -> f64 {
         self.update_joint_forces(q, v);
         let mut a = std::mem::take(&mut self.scratch);

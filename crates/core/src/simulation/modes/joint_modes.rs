@@ -334,10 +334,10 @@ impl JointModes {
         f64::from(q >= upper) - f64::from(q <= lower)
     }
 
-    /// Returns the bounds, N m or N, of the torque with which friction and a stop hold joint `j` at rest at
-    /// the position `q`, rad or m: `−fs` and `fs` with the static friction `fs`, but no bound on the side on
-    /// which a stop pushes. For a joint with prescribed motion, or one that a brake holds rigidly, both
-    /// bounds are infinite.
+    /// Returns the bounds, N m or N, of the torque with which friction, a brake and a stop hold joint `j` at
+    /// rest at the position `q`, rad or m: `−f` and `f` with the torque `f` of
+    /// [`JointModes::holding_friction`], but no bound on the side on which a stop pushes. For a joint with
+    /// prescribed motion, or one that a brake holds rigidly, both bounds are infinite.
     pub(super) fn torque_bounds(&self, j: usize, q: f64) -> (f64, f64) {
         if self.is_given(j) || self.brakes.holds(j) {
             return (f64::NEG_INFINITY, f64::INFINITY);
@@ -374,14 +374,14 @@ impl JointModes {
         }
     }
 
-    /// Returns the power that damping and friction dissipate, `Σ (b q̇ + f s) q̇`, W, with the damping `b`,
-    /// the kinetic friction `f` and the direction of slip `s` of each joint.
+    /// Returns the power that damping, friction and brakes dissipate, `Σ (b q̇ + f s) q̇`, W, with the
+    /// damping `b`, the Coulomb friction `f` of the joint and of its brake, and the direction of slip `s`.
     #[inline(always)]
     pub(in crate::simulation) fn loss<S: Real>(&self, model: &Model, v: &[S]) -> S {
         self.loss_of(model, v, 0..model.joint_count())
     }
 
-    /// Returns the power that damping and friction of the given joints dissipate, W.
+    /// Returns the power that damping, friction and brakes of the given joints dissipate, W.
     #[inline(always)]
     pub(in crate::simulation) fn loss_of<S: Real>(
         &self,

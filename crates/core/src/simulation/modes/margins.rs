@@ -60,8 +60,9 @@ impl<S: Real> ModesOfStep<'_, '_, S> {
         self.joints().find(slips_back)
     }
 
-    /// Returns the rate of the first joint that came to rest or reached its stop, rad/s or m/s: the larger of
-    /// the magnitudes at both ends of the step; `None` if there is no such joint.
+    /// Returns the rate of the first joint that moves into its stop or, if there is none, of the first joint
+    /// that came to rest, rad/s or m/s: the larger of the magnitudes at both ends of the step. Returns `None`
+    /// if there is no such joint.
     pub(super) fn rate_of_first_stopped(&self) -> Option<f64> {
         let rate = |state: &TreeState<S>, j: usize| state.v[BASE_NV + j].lane(0).abs();
         let came_to_rest = |j: &usize| rate(self.end, *j) == 0.0 && rate(self.start, *j) > 0.0;

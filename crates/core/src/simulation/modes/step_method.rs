@@ -1,5 +1,5 @@
-//! Step method that ends a step early when a joint stops, starts to slip or reaches a limit, when a latch
-//! opens or closes, or when the mode of a contact changes.
+//! Step method that ends a step early when a joint stops, starts to slip or reaches a limit, when the
+//! conditions of a latch begin or cease to hold, or when the mode of a contact changes.
 
 use super::margins::ModesOfStep;
 use crate::simulation::equations::EquationsOfMotion;
@@ -15,8 +15,8 @@ const MOST_IDLE_STEPS: usize = 32;
 /// Length, as a fraction of a regular step, below which a step counts as idle if no joint came to rest or
 /// reached its stop during the step.
 const IDLE: f64 = 1e-6;
-/// Displacement, rad or m, of a joint in a step in which it came to rest or reached its stop. If the
-/// displacement is smaller, the step counts as idle.
+/// Displacement, rad or m, below which a step counts as idle: that of the joint that came to rest or reached
+/// its stop during the step.
 const STILL: f64 = 1e-9;
 /// Smallest length to which a step may be shortened to improve its energy balance, relative to its length
 /// before any mode change was located. If it were relative to the length after a change was located, which
@@ -29,7 +29,8 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// previous forces. In such a short step, the forces would be dominated by the rounding errors of the
 /// velocities divided by the length of the step.
 const SHORTEST_HOLD: f64 = 1e-9;
-/// Time in which a gap or an overlap of bodies that rest on each other is corrected, in units of the step.
+/// Time in which a gap or an overlap of bodies that rest on each other is corrected, in units of the step or,
+/// if that is longer, of a regular step.
 const CORRECTION: f64 = 4.0;
 /// Largest number of trial steps with which the forces between bodies that rest on each other are determined.
 const MOST_TRIALS: usize = 8;

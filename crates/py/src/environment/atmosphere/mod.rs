@@ -45,8 +45,8 @@ impl PyAtmosphere {
     }
 }
 
-/// Returns the given Earth or, if none is given, an Earth at rest, which suffices for models that depend
-/// neither on the Sun nor on the date.
+/// Returns the given Earth or, if none is given, an Earth without rotation and epoch, which suffices for
+/// models that depend neither on the Sun nor on the date.
 fn earth_or_fixed(earth: Option<&Bound<'_, PyEarth>>) -> Arc<Earth> {
     earth.map_or_else(|| Arc::new(Earth::about_z(0.0, 0.0)), |earth| Arc::clone(&earth.get().earth))
 }
@@ -137,9 +137,14 @@ impl PyAtmosphere {
         };
         let out = zeros(py, &shape)?;
         let zero = 0.0_f64.into_pyobject(py)?.into_any();
-        let ([_, t], both) = broadcast(["r", "t"], [out.as_any(), t.unwrap_or(&zero)])?;
+        let given = t.unwrap_or(&zero);
+        let ([_, t], both) = broadcast(["r", "t"], [out.as_any(), given])?;
         if both != shape {
-            return Err(wrong_shape(py, "t", "that of the positions, or a number", &both));
+            let expected = match shape[..] {
+                [n] => format!("a number or ({n},), one time per position"),
+                _ => "a number".to_owned(),
+            };
+            return Err(wrong_shape(py, "t", &expected, Input::new(given, "t")?.shape()));
         }
         let (to, earth) = (fresh(&out), Arc::clone(&earth.get().earth));
         let (positions, times) = (r.data(), t.data());

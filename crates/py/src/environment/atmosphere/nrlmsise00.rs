@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 /// f107 : float, optional
 ///     Solar flux F10.7 of the previous day, 1e-22 W/(m² Hz).
 /// f107a : float, optional
-///     81-day mean of F10.7, 1e-22 W/(m² Hz).
+///     Mean of F10.7 over 81 days centred on the day, 1e-22 W/(m² Hz).
 /// ap : float or (7,) array, optional
 ///     Geomagnetic index: either the daily mean, or a history that consists of the daily mean, the 3-hour
 ///     indices at the time and 3, 6 and 9 h before, and the means of 12-33 h and of 36-57 h before.

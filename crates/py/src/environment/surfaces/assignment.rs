@@ -50,7 +50,7 @@ impl SurfaceAssignment {
     }
 
     /// Returns the surfaces on the given systems. If bodies have no faces because they have no visual
-    /// geometry, a warning lists them. A single system without any surface is an error.
+    /// geometry, a warning lists them. It is an error if no body of any system has a surface.
     pub(crate) fn on_with_warning(
         &self,
         py: Python<'_>,

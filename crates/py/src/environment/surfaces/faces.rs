@@ -7,8 +7,9 @@ use pyo3::prelude::*;
 
 /// Faces of a body's visual geometry. A body consists of a link and all links that are fixed to it.
 ///
-/// Boxes, cylinders and spheres are represented exactly, capsules with an error of 2 %; for meshes, the
-/// construction of the simulation raises ``EffectError``.
+/// Boxes, cylinders and spheres are represented exactly, capsules with an error of at most 2 % of the
+/// projected area of their ends. For meshes and all other shapes, the construction of the simulation raises
+/// ``EffectError``.
 ///
 /// The force on each face depends on its angle of incidence and acts at its centroid, which results in a
 /// torque. Faces do not shadow each other.

@@ -22,7 +22,8 @@ use pyo3::prelude::*;
 /// Raises
 /// ------
 /// EffectError, ShapeError
-///     If a number is outside its range, a normal is zero, or an array has the wrong shape.
+///     If there are no plates, a number is outside its range, a normal is zero, or an array has the wrong
+///     shape.
 #[pyclass(name = "Plates", extends = PySurface, frozen, module = "onorbit_rs")]
 pub(super) struct PyPlates;
 

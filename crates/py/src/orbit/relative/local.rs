@@ -77,7 +77,7 @@ pub(super) fn to_lvlh<'py>(
 ///
 /// Raises
 /// ------
-/// OrbitError
+/// OrbitError, InputError, ShapeError
 ///     As for :func:`to_lvlh`.
 #[pyfunction]
 #[pyo3(signature = (orbit, t, r, v, *, frame="lvlh"))]
