@@ -37,6 +37,7 @@ pub fn forward_dynamics<S: Real>(
 
 /// Computes [`forward_dynamics`] with the external wrenches stored in `data`. Requires up-to-date
 /// [`kinematics`] in `data`.
+#[inline]
 pub fn forward_dynamics_recursion<S: Real>(
     model: &Model,
     data: &mut Data<S>,

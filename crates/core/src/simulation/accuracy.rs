@@ -93,14 +93,32 @@ impl<S: Scalar> Accuracy<S> {
     ) -> Result<(), SimulationError> {
         let is_due = self.doubling.as_ref().is_some_and(|doubling| doubling.is_due(step));
         self.is_recorded = is_due && !self.every_step.is_empty();
+        if is_due || !self.every_step.is_empty() {
+            self.measure_start(is_due.then_some(step), interval, state, equations, mover)?;
+        }
+        Ok(())
+    }
+
+    /// Stores the start of a step over `interval`, s, for the checks, and probes the step with the index
+    /// `probed` if it is not `None`.
+    #[inline(never)]
+    fn measure_start(
+        &mut self,
+        probed: Option<usize>,
+        interval: (f64, f64),
+        state: &State<S>,
+        equations: &mut Equations<'_, S>,
+        mover: &mut Mover<'_, S>,
+    ) -> Result<(), SimulationError> {
         let EquationsOfMotion { trees, loads, .. } = equations;
         for (every_step, (state, tree)) in self.every_step.iter_mut().zip(pairs(state, trees)) {
-            if is_due {
+            if probed.is_some() {
                 every_step.record_start(interval.0, state, tree, loads)?;
             }
             every_step.start(interval.0, state, tree);
         }
-        if let (Some(doubling), Some(integration)) = (&mut self.doubling, mover.integration()) {
+        let parts = (probed, &mut self.doubling, mover.integration());
+        if let (Some(step), Some(doubling), Some(integration)) = parts {
             // if step doubling fails, the step fails too and reports the error
             let _ = doubling.probe(step, interval, state, equations, integration);
         }
@@ -141,6 +159,7 @@ impl<S: Scalar> Accuracy<S> {
 
     /// Records the end of a step whose base rows of inverse dynamics are checked. Writes the state at the
     /// end, with projected base twists, and its accelerations to the buffers `(end, stages)`.
+    #[inline(never)]
     fn record_end(
         &mut self,
         interval: (f64, f64),

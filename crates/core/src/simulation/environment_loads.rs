@@ -239,6 +239,7 @@ impl EnvironmentLoads {
 }
 
 impl<S: Scalar> ExternalLoads<S> for EnvironmentLoads {
+    #[inline(never)]
     fn apply(
         &mut self,
         trees: &mut [Tree<'_, S>],
@@ -247,9 +248,6 @@ impl<S: Scalar> ExternalLoads<S> for EnvironmentLoads {
         t: f64,
         interval: (f64, f64),
     ) -> Result<(), SimulationError> {
-        if !ExternalLoads::<S>::is_active(self) {
-            return Ok(());
-        }
         members.follow(trees, &state.trees);
         let Members { places, parts } = members;
         for (number, place) in places.iter().enumerate() {

@@ -57,6 +57,7 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
 
     /// Computes the external wrenches on all trees at time `t`, s, in a step over `interval`, s: those of the
     /// environment and those of the contacts. Requires the kinematics of `state` in the trees.
+    #[inline]
     pub(crate) fn apply_loads(
         &mut self,
         t: f64,
@@ -75,12 +76,16 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
     }
 
     /// Computes the wrenches of the environment alone; see [`Self::apply_loads`].
+    #[inline]
     pub(crate) fn apply_environment(
         &mut self,
         t: f64,
         interval: (f64, f64),
         state: &State<S>,
     ) -> Result<(), SimulationError> {
+        if !self.loads.is_active() {
+            return Ok(()); // the wrenches on all bodies remain zero
+        }
         self.loads.apply(&mut self.trees, &mut self.members, state, t, interval)
     }
 

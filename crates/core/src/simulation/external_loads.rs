@@ -8,7 +8,7 @@ use super::tree::Tree;
 /// External wrenches on the bodies of all trees of a run.
 pub(crate) trait ExternalLoads<S> {
     /// Writes to the data of `trees` the external wrench on each body at time `t`, s, in a step over
-    /// `interval`, s. Requires the kinematics of `state` in the trees.
+    /// `interval`, s. Requires the kinematics of `state` in the trees. Called only if the loads are active.
     fn apply(
         &mut self,
         trees: &mut [Tree<'_, S>],

@@ -25,11 +25,9 @@ impl<S: Scalar> RunState<'_, S> {
     }
 
     /// Adds a row to the balance for the last recorded rows of the systems, which belong to the current state
-    /// or, if `is_within_step`, to the state in the row buffer. Does nothing for a single system.
+    /// or, if `is_within_step`, to the state in the row buffer.
+    #[inline(never)]
     pub(super) fn add_group_row(&mut self, is_within_step: bool) {
-        if self.systems.len() < 2 {
-            return;
-        }
         let state = if is_within_step { &self.row_buffers.0 } else { &self.state };
         let Ledger { impulse, work, .. } = self.totals(state);
         let EquationsOfMotion { trees, members, .. } = &self.equations;

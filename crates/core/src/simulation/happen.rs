@@ -14,10 +14,8 @@ impl<S: Scalar> RunState<'_, S> {
     /// Applies the events that are due at `t`, s, the start of a step over `interval`, s, in the order of
     /// their declaration. If any of them has an effect, one row is recorded before them and one after them.
     /// Requires the kinematics of the current state, with projected base twists, in the equations of motion.
+    #[inline(never)]
     pub(super) fn happen(&mut self, t: f64, interval: (f64, f64)) -> Result<(), SimulationError> {
-        if self.events.list.is_empty() {
-            return Ok(());
-        }
         self.end_seatings(t)?;
         self.update_latches(t);
         while let Some(number) = self.events.next_due(t, &self.schedule) {

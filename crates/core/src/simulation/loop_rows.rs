@@ -49,10 +49,8 @@ impl<S: Scalar> RunState<'_, S> {
     /// Adds the forces and openings of the closed loops to the last rows of all systems. Requires the
     /// kinematics and loads of the state, or of the state in the row buffer if `is_within_step`, in the
     /// equations of motion.
+    #[inline(never)]
     pub(super) fn record_loops(&mut self, is_within_step: bool) {
-        if self.systems.iter().all(|run| run.recorder.trace.loops.is_empty()) {
-            return;
-        }
         let mut rows = std::mem::take(&mut self.loop_rows);
         rows.clear();
         let state = if is_within_step { &self.row_buffers.0 } else { &self.state };

@@ -55,8 +55,10 @@ impl<S: Scalar> Mover<'_, S> {
         interval: (f64, f64),
     ) -> Result<bool, SimulationError> {
         match self {
-            Self::Native(method) => method.hold_contacts(equations, state, interval),
-            Self::External(_) => Ok(false),
+            Self::Native(method) if equations.contacts.has_resting() => {
+                method.hold_contacts(equations, state, interval)
+            }
+            Self::Native(_) | Self::External(_) => Ok(false),
         }
     }
 

@@ -129,8 +129,12 @@ impl<S: Scalar> RunState<'_, S> {
             let row = contacts.row(contact, trees, state).map_err(at_time(t))?;
             systems[contacts.owner(contact)].recorder.record_contact(&contacts.names[contact], &row);
         }
-        self.record_loops(is_within_step);
-        self.add_group_row(is_within_step);
+        if self.systems.iter().any(|run| !run.recorder.trace.loops.is_empty()) {
+            self.record_loops(is_within_step);
+        }
+        if self.systems.len() > 1 {
+            self.add_group_row(is_within_step);
+        }
         Ok(())
     }
 

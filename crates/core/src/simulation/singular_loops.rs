@@ -26,9 +26,9 @@ impl<S: Real> Tree<'_, S> {
 impl<S: Scalar> RunState<'_, S> {
     /// Finds the loops that have become singular. Requires that the current state is that at `t`, s, after
     /// its projection onto the momentum and the loops.
+    #[inline(never)]
     pub(super) fn find_singular_loops(&mut self, t: f64) {
-        let has_loops = self.equations.trees.iter().any(|tree| !tree.loops.is_empty());
-        if !has_loops || self.mover.is_external() {
+        if self.mover.is_external() {
             return; // an external engine solves its own constraints
         }
         let mut found = Vec::new(); // allocates only if a loop is found

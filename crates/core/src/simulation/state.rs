@@ -75,9 +75,16 @@ impl<S: Real> State<S> {
         if self.trees.len() > 1 {
             self.orbital = rate.orbital.scale_add(h, from.orbital);
         }
+        if !(from.contacts.is_empty() && self.contacts.is_empty()) {
+            self.move_contacts(from, rate, h.lane(0));
+        }
+    }
+
+    #[inline(never)]
+    fn move_contacts(&mut self, from: &Self, rate: &Rate<S>, h: f64) {
         self.contacts.resize(from.contacts.len(), ContactState::ZERO);
         for ((to, from), rate) in self.contacts.iter_mut().zip(&from.contacts).zip(&rate.contacts) {
-            *to = from.plus(rate, h.lane(0));
+            *to = from.plus(rate, h);
         }
     }
 }
@@ -102,9 +109,16 @@ impl<S: Real> Rate<S> {
         if self.trees.len() > 1 {
             self.orbital = other.orbital.scale_add(s, self.orbital);
         }
+        if !(other.contacts.is_empty() && self.contacts.is_empty()) {
+            self.accumulate_contacts(other, s.lane(0));
+        }
+    }
+
+    #[inline(never)]
+    fn accumulate_contacts(&mut self, other: &Self, s: f64) {
         self.contacts.resize(other.contacts.len(), ContactState::ZERO);
         for (sum, other) in self.contacts.iter_mut().zip(&other.contacts) {
-            *sum = sum.plus(other, s.lane(0));
+            *sum = sum.plus(other, s);
         }
     }
 

@@ -53,10 +53,14 @@ impl<S: Scalar> RunState<'_, S> {
         if !self.state.is_finite() {
             return Err(self.diverged(t));
         }
-        self.find_singular_loops(t);
+        if self.equations.trees.iter().any(|tree| !tree.loops.is_empty()) {
+            self.find_singular_loops(t);
+        }
         self.accuracy.end_step(t, &self.state, &self.equations);
         // 2 events: captures and releases
-        self.happen(t, (t, end))?;
+        if !self.events.list.is_empty() {
+            self.happen(t, (t, end))?;
+        }
         let end = self.schedule.first_due(t, end);
         // 3 impacts of rigid bodies, and of joints at their stops
         self.impacts(t, (t, end))?;
@@ -85,7 +89,7 @@ impl<S: Scalar> RunState<'_, S> {
     /// step ends earlier.
     fn loads_and_controllers(&mut self, interval: &Interval, end: f64) -> Result<(), SimulationError> {
         let t = interval.start;
-        let is_due = self.find_due(t);
+        let is_due = self.has_controls() && self.find_due(t);
         let uses_loads =
             is_due && self.systems.iter().any(|run| run.controllers.set.compensates_environment());
         if is_due {
@@ -113,6 +117,7 @@ impl<S: Scalar> RunState<'_, S> {
     }
 
     /// Passes the normal forces of the contacts to the controllers of each system that uses them.
+    #[inline(never)]
     fn pass_normal_forces(&mut self) {
         let Self { equations: EquationsOfMotion { trees, members, contacts, .. }, systems, .. } = self;
         for (number, run) in systems.iter_mut().enumerate() {
@@ -130,6 +135,7 @@ impl<S: Scalar> RunState<'_, S> {
     /// Finds the systems whose controllers are due at `t`, s. Controllers are due at their ticks and when an
     /// event starts a control. If a trial step has already updated controllers at this cut, they are due
     /// again only after a new command. Returns true if any controllers are due.
+    #[inline(never)]
     fn find_due(&mut self, t: f64) -> bool {
         let is_repeated = self.controllers_updated;
         for number in 0..self.systems.len() {
@@ -226,12 +232,14 @@ impl<S: Scalar> RunState<'_, S> {
     /// Returns the error with which a step from `t`, s, ends, after replacing errors that are consequences of
     /// divergence. The overflow of a torque, and any error while the state is not finite, such as that of an
     /// orbit or effect at a non-finite position, becomes [`SimulationError::Diverged`].
+    #[cold]
     pub(super) fn name_divergence(&self, error: SimulationError, t: f64) -> SimulationError {
         let is_overflow = matches!(&error, SimulationError::Control(ControlError::Overflow { .. }));
         if is_overflow || self.mover.first_diverged(&self.state).is_some() { self.diverged(t) } else { error }
     }
 
     /// Returns [`SimulationError::Diverged`] at `time`, s, with the last finite state.
+    #[cold]
     fn diverged(&self, time: f64) -> SimulationError {
         let number = self.mover.first_diverged(&self.state).unwrap_or(0); // if all are finite, a torque overflowed
         let [q, v] = self.mover.last_finite(number, &self.state);

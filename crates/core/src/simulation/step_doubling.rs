@@ -152,8 +152,9 @@ impl<S: Scalar> StepDoubling<S> {
         step.is_multiple_of(self.every) || self.every == EVERY && EARLY.contains(&step)
     }
 
-    /// Probes the step with index `step` over `interval`, s, if a probe is due. The kinematics and loads in
+    /// Probes the step with index `step` over `interval`, s. The kinematics and loads in
     /// `equations` are restored bit by bit.
+    #[inline(never)]
     pub(super) fn probe(
         &mut self,
         step: usize,
@@ -162,9 +163,6 @@ impl<S: Scalar> StepDoubling<S> {
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
         integration: &mut Integration<S>,
     ) -> Result<(), SimulationError> {
-        if !self.is_due(step) {
-            return Ok(());
-        }
         self.errors.iter_mut().for_each(|errors| errors.advance(step));
         for (start, tree) in self.start.iter_mut().zip(&equations.trees) {
             start.copy_from(&tree.data);

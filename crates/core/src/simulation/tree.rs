@@ -103,17 +103,24 @@ impl<'a, S: Real> Tree<'a, S> {
         if self.loops.is_empty() {
             self.project_twist(state);
         } else {
-            self.move_given(state);
-            let Self { model, data, loops, modes, kept, .. } = self;
-            modes.find_kept_at_rest(&state.q, &state.v, kept);
-            project_configuration(model, data, loops, &mut state.q, locked(kept));
-            self.project_twist(state);
-            self.close_velocity(state);
+            self.project_onto_loops(state);
         }
         if let Some(center) = state.center {
             let shift = center - center_of_mass(&self.data, &state.q);
             (Vec3::from_slice(&state.q) + shift).write(&mut state.q);
         }
+    }
+
+    /// Projects the configuration onto the closed loops, the base twist onto the momentum, and the velocity
+    /// onto the closed loops.
+    #[inline(never)]
+    fn project_onto_loops(&mut self, state: &mut TreeState<S>) {
+        self.move_given(state);
+        let Self { model, data, loops, modes, kept, .. } = self;
+        modes.find_kept_at_rest(&state.q, &state.v, kept);
+        project_configuration(model, data, loops, &mut state.q, locked(kept));
+        self.project_twist(state);
+        self.close_velocity(state);
     }
 
     fn project_twist(&mut self, state: &mut TreeState<S>) {
@@ -152,6 +159,7 @@ impl<'a, S: Real> Tree<'a, S> {
 
     /// Computes the accelerations `a`, `(nv,)`, at the velocity `v` under the generalized forces in `forces`,
     /// with the present modes of the joints and the constraints of closed loops.
+    #[inline]
     pub(super) fn accelerate(&mut self, v: &[S], a: &mut [S]) {
         let Self { model, data, loops, forces, modes, .. } = self;
         let locked = modes.locked().map(|locked| (locked, modes.accelerations()));
@@ -285,6 +293,7 @@ impl<'a, S: Real> Tree<'a, S> {
     /// commanded torque `τ`, the stiffnesses `k` and `k₃` and the deflection `d` of the spring, the damping
     /// `b`, the Coulomb friction `f` of the joint and of an engaged brake, and the direction of slip `s`, and
     /// writes them to `forces`. For joints whose motors compensate friction, `f` is that of the brake alone.
+    #[inline]
     pub(super) fn update_joint_forces(&mut self, q: &[S], v: &[S]) {
         let Self { model, modes, command, forces, is_lossy, springs, .. } = self;
         forces[BASE_NV..].copy_from_slice(command);

@@ -36,6 +36,7 @@ pub fn constrained_forward_dynamics<S: Real>(
 /// Computes [`constrained_forward_dynamics`] with the external wrenches stored in `data` and with locked
 /// joints. Requires up-to-date [`kinematics`] in `data`. The holding torques of locked joints are stored in
 /// `data`.
+#[inline]
 pub(crate) fn constrained_recursion<S: Real>(
     model: &Model,
     data: &mut Data<S>,
@@ -48,9 +49,20 @@ pub(crate) fn constrained_recursion<S: Real>(
         Some((locked, given)) => locked_dynamics_recursion(model, data, v, tau, locked, given, a),
         None => forward_dynamics_recursion(model, data, v, tau, a),
     }
-    if loops.is_empty() {
-        return S::of(0.0);
-    }
+    if loops.is_empty() { S::of(0.0) } else { constrain(model, data, loops, (v, tau), locked, a) }
+}
+
+/// Adds the response to the constraint forces to the accelerations `a` of forward dynamics without loops, and
+/// returns the rank of `J`; see [`constrained_forward_dynamics`].
+#[inline(never)]
+fn constrain<S: Real>(
+    model: &Model,
+    data: &mut Data<S>,
+    loops: &mut ClosedLoops<S>,
+    (v, tau): (&[S], &[S]),
+    locked: Locked<'_>,
+    a: &mut [S],
+) -> S {
     let locked = locked.map(|(locked, _)| locked);
     let rank = S::enter(
         #[inline(always)]

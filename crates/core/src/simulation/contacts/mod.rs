@@ -272,6 +272,7 @@ impl Contacts {
     /// Determines the modes for the step from `t` to `end`, s, and returns the end of the step, which may be
     /// earlier than `end` while bodies touch or approach each other. The function reduces the contact states
     /// in `state` to those of the near pairs. Requires the kinematics of `state` in the trees.
+    #[inline(never)]
     pub(super) fn begin<S: Real>(
         &mut self,
         (t, end): (f64, f64),

@@ -8,8 +8,11 @@ use crate::simulation::state::{Rate, State};
 use crate::simulation::tree_state::TreeState;
 use crate::spatial::{Real, Vec3, dexp_inv};
 
-/// Nodes `c`, as fractions of the step, and weights `b` of the second to fourth stages.
-const STAGES: [(f64, f64); 3] = [(0.5, 1.0 / 3.0), (0.5, 1.0 / 3.0), (1.0, 1.0 / 6.0)];
+/// Weights `b` of the four stages.
+const WEIGHTS: [f64; 4] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
+
+/// Nodes `c` of the second to fourth stages, as fractions of the step.
+const NODES: [f64; 3] = [0.5, 0.5, 1.0];
 
 /// Nyström weights `ā` of the position `p` of the base's origin at the stages:
 /// `p_i = p₀ + c_i h ṗ₀ + h² Σ ā_ij p̈_j`, with the node `c_i` of stage `i` and the step length `h`.
@@ -54,43 +57,70 @@ pub(super) fn rk4<S: Real>(
     let Stages { start, trial, rate, sum, .. } = stages;
     let (t, h) = (interval.0, interval.1 - interval.0);
     sum.clear();
-    S::enter(
-        #[inline(always)]
-        || sum.accumulate(rate, S::of(1.0 / 6.0)),
-    );
     for (base, rate) in bases.iter_mut().zip(&rate.trees) {
         (base.velocity, base.accelerations) = (rate.base_velocity, [rate.base_acceleration; 3]);
     }
-    for (stage, (c, b)) in STAGES.into_iter().enumerate() {
-        S::enter(
-            #[inline(always)]
-            || {
-                for (base, rate) in bases.iter_mut().zip(&rate.trees) {
-                    base.accelerations[stage] = rate.base_acceleration;
-                    base.theta = rate.rotation_rate * S::of(c * h);
-                }
-                trial.move_from(start, rate, S::of(c * h));
-                move_origins(bases, NYSTROM[stage], S::of(c * h), S::of(h * h), start, trial);
-            },
-        );
+    for (stage, c) in NODES.into_iter().enumerate() {
+        add_stage(stage, bases, trial, rate, sum);
+        for (base, rate) in bases.iter_mut().zip(&rate.trees) {
+            base.accelerations[stage] = rate.base_acceleration;
+        }
+        move_states(bases, NYSTROM[stage], (c, h), (start, rate), trial);
         let instant = if c == 1.0 { interval.1 } else { t + c * h };
         equations.evaluate(instant, interval, trial, rate)?;
-        S::enter(
-            #[inline(always)]
-            || {
-                to_rotation_vector(bases, trial, rate);
-                sum.accumulate(rate, S::of(b));
-            },
-        );
     }
+    add_stage(NODES.len(), bases, trial, rate, sum);
+    move_states(bases, NYSTROM_END, (1.0, h), (start, sum), state);
+    Ok(())
+}
+
+/// Adds the time derivatives `rate` at the stage with this index, which was evaluated at `trial`, to the
+/// weighted sum. The derivative of the rotation vector `θ` is `ω` at the first stage, where `θ` is zero, and
+/// `dexp⁻¹(θ) ω` at the others.
+// Not inlined, like `move_states`: the machine code of a step fits into the instruction cache only if the
+// stages share it.
+#[inline(never)]
+fn add_stage<S: Real>(
+    stage: usize,
+    bases: &[BaseStages<S>],
+    trial: &State<S>,
+    rate: &mut Rate<S>,
+    sum: &mut Rate<S>,
+) {
     S::enter(
         #[inline(always)]
         || {
-            state.move_from(start, sum, S::of(h));
-            move_origins(bases, NYSTROM_END, S::of(h), S::of(h * h), start, state);
+            if stage > 0 {
+                to_rotation_vector(bases, trial, rate);
+            }
+            sum.accumulate(rate, S::of(WEIGHTS[stage]));
         },
     );
-    Ok(())
+}
+
+/// Stores the states at the time `c h` after the start of the step of length `h`, s, for the constant time
+/// derivatives `rate` in `to`. The position of each origin instead depends on its accelerations and on the
+/// Nyström `weights`. Also stores the rotation vectors since the start of the step.
+#[inline(never)]
+fn move_states<S: Real>(
+    bases: &mut [BaseStages<S>],
+    weights: [f64; 3],
+    (c, h): (f64, f64),
+    (start, rate): (&State<S>, &Rate<S>),
+    to: &mut State<S>,
+) {
+    let (h, h_squared) = (S::of(c * h), S::of(h * h));
+    S::enter(
+        #[inline(always)]
+        || {
+            to.move_from(start, rate, h);
+            let trees = start.trees.iter().zip(&rate.trees).zip(&mut to.trees);
+            for (base, ((start, rate), to)) in bases.iter_mut().zip(trees) {
+                base.theta = rate.rotation_rate * h;
+                move_origin(base, weights, h, h_squared, start, to);
+            }
+        },
+    );
 }
 
 /// Writes the time derivatives of the rotation vectors `θ` at a stage, `dexp⁻¹(θ) ω`, to `rate`.
@@ -98,21 +128,6 @@ pub(super) fn rk4<S: Real>(
 fn to_rotation_vector<S: Real>(bases: &[BaseStages<S>], trial: &State<S>, rate: &mut Rate<S>) {
     for ((base, trial), rate) in bases.iter().zip(&trial.trees).zip(&mut rate.trees) {
         rate.rotation_rate = dexp_inv(base.theta, Vec3::from_slice(&trial.v[3..]));
-    }
-}
-
-/// Writes the positions of the origins of all bases to `to`; see [`move_origin`].
-#[inline(always)]
-fn move_origins<S: Real>(
-    bases: &[BaseStages<S>],
-    weights: [f64; 3],
-    h: S,
-    h_squared: S,
-    start: &State<S>,
-    to: &mut State<S>,
-) {
-    for ((base, start), to) in bases.iter().zip(&start.trees).zip(&mut to.trees) {
-        move_origin(base, weights, h, h_squared, start, to);
     }
 }
 

@@ -98,6 +98,7 @@ impl<S: Real> StepMethod<S> {
     /// velocities at the end of the step satisfy the law. Returns true if bodies have separated. Requires
     /// projected base twists in `state`, and its kinematics, loads and joint modes in `equations`; computes
     /// all of these again.
+    #[inline(never)]
     pub(crate) fn hold_contacts(
         &mut self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -105,7 +106,7 @@ impl<S: Real> StepMethod<S> {
         interval: (f64, f64),
     ) -> Result<bool, SimulationError> {
         let h = interval.1 - interval.0;
-        if h <= SHORTEST_HOLD * self.time_step || !equations.contacts.has_resting() {
+        if h <= SHORTEST_HOLD * self.time_step {
             return Ok(false);
         }
         let correction = CORRECTION * h.max(self.time_step);
@@ -139,9 +140,21 @@ impl<S: Real> StepMethod<S> {
         state: &mut State<S>,
         interval: (f64, f64),
     ) -> Result<f64, SimulationError> {
-        if !equations.has_modes() {
-            return self.integration.advance(equations, state, interval);
+        if equations.has_modes() {
+            self.advance_to_change(equations, state, interval)
+        } else {
+            self.integration.advance(equations, state, interval)
         }
+    }
+
+    /// Advances `state` as [`advance`](Self::advance) does, at most to the first change of a mode.
+    #[inline(never)]
+    fn advance_to_change(
+        &mut self,
+        equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
+        state: &mut State<S>,
+        interval: (f64, f64),
+    ) -> Result<f64, SimulationError> {
         let has_balance = !equations.contacts.is_empty() && equations.contacts.energy_error.is_finite();
         let is_balanced = has_balance && self.integration.is_rk4();
         let balance = is_balanced.then(|| equations.energy_balance(state)[0]);
