@@ -191,13 +191,13 @@ def test_the_scenario_moves_the_module_with_both_arms(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("changes", "expected"),
     [
-        (("loop: right_grasp", "loop: right_gasp"), "loops that transmit one are: left_grasp, right_grasp"),
+        (("loop: right_grasp", "loop: right_gasp"), "loops that transmit forces are: left_grasp, right_grasp"),
         (
             ("module/berthing_ring   #", "modul/berthing_ring   #"),
             "controllers[1].load: 'modul/berthing_ring'",
         ),
         (("module/berthing_ring   #", "module/bething_ring   #"), "did you mean 'berthing_ring'"),
-        (("knows: [module]", "knows: []"), "control 'berth' moves a load of a system that its own"),
+        (("knows: [module]", "knows: []"), "moves a load of the system"),
         (("force: [0, 10 N, 0]", "force: [0, 10 N]"), "internal_forces[0].force"),
         (("force: [0, 10 N, 0]", "fource: [0, 10 N, 0]"), "did you mean 'force'"),
     ],

@@ -362,11 +362,6 @@ impl Touching {
         [0, 1].map(|i| self.sides[i].motion(frames.motion(self.sides[i].number, trees, state)))
     }
 
-    /// Returns true if the pieces overlap, or rest on each other under an impact law.
-    fn has_touched(&self) -> bool {
-        self.mode.phase.is_closed() || self.is_resting()
-    }
-
     /// Returns the quoted names of the links of both sides, joined by "and", for error messages.
     fn links<S: Real>(&self, trees: &[Tree<'_, S>]) -> String {
         let frame = |side: &Side| &trees[side.place.0].model.frames()[side.place.1].name;

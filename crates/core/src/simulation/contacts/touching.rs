@@ -71,6 +71,11 @@ pub(in crate::simulation) struct Loading {
 }
 
 impl Touching {
+    /// Returns true if the pieces overlap, or rest on each other under an impact law.
+    pub(super) fn has_touched(&self) -> bool {
+        self.mode.phase.is_closed() || self.is_resting()
+    }
+
     /// Computes the distance between the pieces and their forces, in the present mode and for the motions
     /// `motions` of both sides.
     #[inline]
