@@ -59,7 +59,7 @@ def test_a_run_that_contradicts_its_reference_is_rejected() -> None:
         run(moonlit, oo.Earth(OTHER), [])
     for changed, environment, what in (
         (earth, [field(7), *gravity()[1:]], "the planet's mu or field"),
-        (earth, gravity()[:2], "third bodies"),
+        (earth, gravity()[:2], "the third bodies"),
         (oo.Earth(EPOCH, ut1_minus_utc=0.1), gravity(), "the Earth"),
         (oo.Earth(EPOCH, rotation="about_z"), gravity(), "the Earth"),
     ):
