@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 import onorbit_rs as oo
+from onorbit_rs.figures import Subject
 from onorbit_rs.figures.grip import Grip, commanded_force
+from onorbit_rs.output.write import _albums
 from onorbit_rs.scenario import WorldScenario, load
 from onorbit_rs.scenario.build_world import build_world
 from onorbit_rs.scenario.control import GripForceController
@@ -51,3 +53,15 @@ def test_the_contacts_of_the_fingers_of_a_scenario() -> None:
     (grip,) = [one for one in scenario.scenarios["servicer"].laws if isinstance(one, GripForceController)]
     assert finger_contacts(grip, "servicer", model, scenario.contacts) == (("left_pad",), ("right_pad",))
     assert finger_contacts(grip, "servicer", model, scenario.contacts[:1]) == ()
+
+
+def test_the_figures_of_a_run_know_the_fingers() -> None:
+    """Regression: the report drew the ramp, but not the figures that a run writes."""
+    scenario = load("grasp_and_capture")
+    assert isinstance(scenario, WorldScenario)
+    built = build_world(scenario)
+    trace = built.simulation.run(0.05)
+    subjects = [album.subject for album in _albums(trace, {"events": []}, built)]
+    grips = [one.grips for one in subjects if isinstance(one, Subject) and one.grips]
+    assert [grip["grip"].fingers for grip in grips] == [(("left_pad",), ("right_pad",))]
+    assert set(grips[0]["grip"].pressures or {}) == {"left_pad", "right_pad"}

@@ -120,6 +120,19 @@ def test_regularised_friction_would_creep() -> None:
     assert grasp.creep()[0] < 1e-9
 
 
+def test_the_certificate_of_a_long_grip_by_three_fingers_passes() -> None:
+    """Regression: 8.9e-5 of a gate of 5e-5, and 1.9e-5 for the position, for every step length.
+
+    The rounding errors of the normals between fingers and pin, 1.5e-8, were added up as though all had the
+    same sign. The control with steps that are too long is in ``contact_certificate.rs``.
+    """
+    trace, _ = grasp_worlds.three_fingers(grasp.PIN, 5.0, lasts=5.0)
+    checks = {name: value for name, value, *_ in trace["hand"].certificate()}
+    assert checks["joint_step_doubling_rel"] is not None and checks["joint_step_doubling_rel"] < 1e-5
+    assert checks["position_step_doubling_rel"] is not None and checks["position_step_doubling_rel"] < 1e-6
+    assert all(passed for *_, passed in trace["hand"].certificate())
+
+
 def test_a_law_is_pickled() -> None:
     law = oo.GripForce(25.0, closing_rate=[-0.02], damping=40.0, ramp=1.0, stiffness=3.0)
     again = pickle.loads(pickle.dumps(law))

@@ -31,7 +31,7 @@ from onorbit_rs.figures.relative import relative_motion
 from onorbit_rs.figures.save import as_bytes, save, save_all
 from onorbit_rs.figures.shared_balance import energy_exchange, momentum_exchange
 from onorbit_rs.figures.style import COLUMN, PAGE
-from onorbit_rs.figures.subject import Subject, Tool, subject_of
+from onorbit_rs.figures.subject import Subject, Tool, subject_of, with_fingers
 from onorbit_rs.figures.tracking import control_errors, joint_torques, tracking_errors
 from onorbit_rs.figures.trajectory import desired_trajectory, obtained_trajectory
 from onorbit_rs.figures.world_drawings import world_drawings
@@ -80,5 +80,6 @@ __all__ = [
     "subject_of",
     "success_history",
     "tracking_errors",
+    "with_fingers",
     "world_drawings",
 ]

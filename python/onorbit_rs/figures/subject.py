@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
 from onorbit_rs.figures.grip import Grip
 from onorbit_rs.scenario.control import GripForceController, JointLaw
+from onorbit_rs.scenario.control.fingers import finger_contacts
 from onorbit_rs.scenario.control.selection import joint_group, tool_of
 from onorbit_rs.scenario.load import load
 from onorbit_rs.scenario.targets import Target, targets
 
 if TYPE_CHECKING:
-    from onorbit_rs._core import Earth, Model, Orbit, Trace
-    from onorbit_rs.scenario import Scenario
+    from onorbit_rs._core import Earth, Model, Orbit, Trace, WorldTrace
+    from onorbit_rs.scenario import Scenario, WorldScenario
 
 PAPER = "humanoid_reach"
 """The bundled scenario of the experiment in the OnOrbitROS paper."""
@@ -90,6 +93,24 @@ def subject_of(
         is_carried=scenario.gravity_mode == "carried" or (orbit is not None and orbit.mu is None),
         targets=targets(scenario),
     )  # fmt: skip
+
+
+def with_fingers(subject: Subject, system: str, scenario: WorldScenario, trace: WorldTrace) -> Subject:
+    """Return the subject with the contacts of the fingers of its grippers, and their normal forces."""
+    if subject.model is None or not subject.grips:
+        return subject
+    grips = dict(subject.grips)
+    for control in scenario.scenarios[system].laws:
+        if isinstance(control, GripForceController):
+            fingers = finger_contacts(control, system, subject.model, scenario.contacts)
+            contacts = {name: trace.contacts[name] for names in fingers for name in names}
+            pressures = {
+                name: np.einsum("ti,ti->t", contact.force, contact.normal)
+                for name, contact in contacts.items()
+            }
+            name = getattr(control, "name", "control")
+            grips[name] = replace(grips[name], fingers=fingers, pressures=pressures)
+    return replace(subject, grips=grips)
 
 
 def _is_the_papers(scenario: Scenario) -> bool:

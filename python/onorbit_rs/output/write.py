@@ -142,7 +142,11 @@ def _albums(trace: Trace | WorldTrace, summary: dict[str, Any], built: Built | B
     def alone(prefix: str, own: Trace, one: Built) -> list[Album]:
         if len(own.time) < 2:
             return []
-        return [Album(prefix, figures.subject_of(own, one.scenario, one.model, one.orbit, one.earth))]
+        subject = figures.subject_of(own, one.scenario, one.model, one.orbit, one.earth)
+        if isinstance(built, BuiltWorld):
+            whole = cast("WorldTrace", trace)
+            subject = figures.with_fingers(subject, prefix.removesuffix("_"), built.scenario, whole)
+        return [Album(prefix, subject)]
 
     if isinstance(built, Built):
         return alone("", cast("Trace", trace), built)

@@ -4,16 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
-
-import numpy as np
 
 from onorbit_rs.exceptions import OnOrbitError
 from onorbit_rs.output.robot import CHANGED, was_changed
 from onorbit_rs.scenario.connections import connections, touching
-from onorbit_rs.scenario.control import GripForceController
-from onorbit_rs.scenario.control.fingers import finger_contacts
 from onorbit_rs.scenario.environment.earth import build_earth
 
 if TYPE_CHECKING:
@@ -75,30 +70,12 @@ def world_figures(
         if model is not None:
             models[name] = model
         subject = figures.subject_of(trace[name], alone, model, *around)
-        own += figures_of(_with_fingers(subject, name, scenario, trace), name)
+        own += figures_of(figures.with_fingers(subject, name, scenario, trace), name)
     whole = figures.WorldSubject(
         trace, models, figures.marks_of(summary), connections(scenario), touching(scenario, models)
     )
     shared = [OwnDrawing("", drawing.name, drawing) for drawing in figures.world_drawings(whole)]
     return [*shared, *own]
-
-
-def _with_fingers(subject: Subject, system: str, scenario: WorldScenario, trace: WorldTrace) -> Subject:
-    """Return the subject with the contacts of the fingers of its grippers, and their normal forces."""
-    if subject.model is None or not subject.grips:
-        return subject
-    grips = dict(subject.grips)
-    for control in scenario.scenarios[system].laws:
-        if isinstance(control, GripForceController):
-            fingers = finger_contacts(control, system, subject.model, scenario.contacts)
-            contacts = {name: trace.contacts[name] for names in fingers for name in names}
-            pressures = {
-                name: np.einsum("ti,ti->t", contact.force, contact.normal)
-                for name, contact in contacts.items()
-            }
-            name = getattr(control, "name", "control")
-            grips[name] = replace(grips[name], fingers=fingers, pressures=pressures)
-    return replace(subject, grips=grips)
 
 
 def _robot(scenario: Scenario, summary: dict[str, Any], remarks: list[str], system: str = "") -> Model | None:

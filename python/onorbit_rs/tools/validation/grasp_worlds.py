@@ -135,7 +135,7 @@ def in_hand(trace: oo.WorldTrace) -> np.ndarray:
     )
 
 
-def three_fingers(radius: float, integral: float) -> tuple[oo.WorldTrace, oo.Model]:
+def three_fingers(radius: float, integral: float, *, lasts: float = 3.0) -> tuple[oo.WorldTrace, oo.Model]:
     """Return the trace and the model of a three-finger hand that closes on a pin with a ``radius``, m."""
     model = oo.robots.load("three_finger_hand")
     q = model.neutral()
@@ -154,7 +154,7 @@ def three_fingers(radius: float, integral: float) -> tuple[oo.WorldTrace, oo.Mod
         )
         for name in FINGERS
     ]  # fmt: skip
-    return run(oo.World(systems, contacts=contacts), 3.0, every=20), model
+    return run(oo.World(systems, contacts=contacts), lasts, every=20), model
 
 
 def operation() -> oo.WorldTrace:
