@@ -188,7 +188,7 @@ INVALID: dict[str, tuple[dict[str, list[Any]], dict[str, Any], type[OnOrbitError
     "misspelt topic": (
         {"/joint_states": states()}, {"topic": "/joint_state"}, ReadError, "did you mean '/joint_states'",
     ),
-    "one message": ({"/a": ONE}, {}, ReadError, "it has 1 message with the followed joints and different"),
+    "one message": ({"/a": ONE}, {}, ReadError, "have different times; found: 1"),
     "back in time": ({"/a": BACK}, {}, ReadError, r"message 6 is at 0.04 s, after 0.08 s"),
     "doubled": ({"/a": TWICE}, {}, ReadError, f"message 1 names {NAMES[0]} more than once"),
     "too short": ({"/a": SHORT}, {}, ReadError, "in message 6 are 7, 2 and 0; give one position"),

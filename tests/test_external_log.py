@@ -240,5 +240,5 @@ def test_a_log_of_one_robot_and_entries_of_a_program() -> None:
     again = simulation.start()
     replay_commands(again, [*log.entries, {"time": 0.0, "body": "bus", "torque": [0, 0, 1.0]}], until=0.1)
     assert np.array_equal(again.q, end)
-    with pytest.raises(oo.exceptions.NotFoundError, match="no such file of commands"):
+    with pytest.raises(oo.exceptions.NotFoundError, match="is not a regular file"):
         read_commands("missing.jsonl")

@@ -191,7 +191,10 @@ def test_the_scenario_moves_the_module_with_both_arms(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("changes", "expected"),
     [
-        (("loop: right_grasp", "loop: right_gasp"), "loops that transmit forces are: left_grasp, right_grasp"),
+        (
+            ("loop: right_grasp", "loop: right_gasp"),
+            "loops that transmit forces are: left_grasp, right_grasp",
+        ),
         (
             ("module/berthing_ring   #", "modul/berthing_ring   #"),
             "controllers[1].load: 'modul/berthing_ring'",

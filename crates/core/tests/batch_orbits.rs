@@ -164,12 +164,12 @@ fn ellipses_from_elements_agree_with_kepler() {
         let given: [&[f64]; 7] = [&[a], &[e], &[0.0], &[0.0], &[0.0], &[0.0], &[0.0]];
         kepler_states(given, mu, &mut [0.0; 3], &mut [0.0; 3], None).expect_err("refused").to_string()
     };
-    assert!(
-        wrong(-7e6, 0.1, mu).starts_with("semi_major_axis is -7000000 in state 0"),
-        "{}",
-        wrong(-7e6, 0.1, mu)
-    );
-    assert!(wrong(7e6, 1.0, mu).starts_with("eccentricity is 1 in state 0"));
+    assert!(wrong(-7e6, 0.1, mu).starts_with("semi_major_axis is -7000000; it must be positive"));
+    assert!(wrong(7e6, 1.0, mu).starts_with("eccentricity is 1; it must be"));
+    let each: [&[f64]; 7] = [&[7e6, -7e6], &[0.1], &[0.0], &[0.0], &[0.0], &[0.0], &[0.0]];
+    let second =
+        kepler_states(each, mu, &mut [0.0; 6], &mut [0.0; 6], None).expect_err("refused").to_string();
+    assert!(second.starts_with("semi_major_axis is -7000000 in state 1;"), "{second}");
     assert!(wrong(7e6, 0.1, 0.0).starts_with("mu is 0"));
     assert!(wrong(7e6, f64::NAN, mu).starts_with("eccentricity holds NaN"));
 }

@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 /// Number of rows of a streamed run that are read from a checkpoint at once.
 const ROWS_AT_ONCE: usize = 1 << 14;
 
-/// State of a run from which :meth:`Simulation.run` and :meth:`Simulation.start` resume with identical bits.
+/// State of a run. :meth:`Simulation.run` and :meth:`Simulation.start` resume from it, bit by bit.
 ///
 /// The checkpoint callback of a run receives checkpoints with the rows since the last checkpoint that it
 /// accepted. A run can be resumed only from a checkpoint with all rows, by the version of onorbit_rs that

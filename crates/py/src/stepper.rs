@@ -320,7 +320,7 @@ impl PyStepper {
         self.end(py, &mut self.run.lock(py)?, is_complete)
     }
 
-    /// Return a checkpoint, from which :meth:`Simulation.start` resumes with identical bits.
+    /// Return a checkpoint, from which :meth:`Simulation.start` resumes with bit-identical results.
     ///
     /// Parameters
     /// ----------

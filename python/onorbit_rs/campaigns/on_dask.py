@@ -55,7 +55,7 @@ _AHEAD = 1
 def run_cases(plan: bytes, cases: list[int]) -> tuple[list[Outcome], float]:
     """Run cases on a worker; return their outcomes, and the mean wall-clock time of a case, s.
 
-    Raises CampaignError if the worker has another version or instruction set than the campaign.
+    Raises CampaignError if version or instruction set of the worker differ from those of the campaign.
     """
     began = time.perf_counter()
     loaded = _plan(plan)

@@ -1,7 +1,8 @@
-"""Figures of a run: Fig. 4-7 of the OnOrbitROS paper, base reaction, momentum, energy, environment and orbit.
+"""Figures of runs, comparisons and campaigns.
 
-Each figure is drawn by a function that returns a ``matplotlib.figure.Figure`` and changes no global state.
-Only this folder imports matplotlib.
+They include Fig. 4-7 of the OnOrbitROS paper, base reaction, momentum, energy, environment, orbit, contacts
+and closed loops. Each figure is drawn by a function that returns a ``matplotlib.figure.Figure`` and changes
+no global state. Only this folder imports matplotlib.
 """
 
 from __future__ import annotations

@@ -45,8 +45,8 @@ def read_arrays(stream: BinaryIO, *, trusted: bool = False) -> dict[str, Any]:
     Raises
     ------
     ValueError
-        If the file is not a zip of arrays of real numbers and texts, is compressed by another method than
-        deflate, truncated or damaged, or states contradictory sizes.
+        If the file is not a zip of arrays of real numbers and texts, is compressed by a method other
+        than deflate, truncated or damaged, or states contradictory sizes.
     OSError
         If the folder of temporary files has too little space.
     """

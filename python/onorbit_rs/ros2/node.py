@@ -276,7 +276,7 @@ def _check(simulation: object, pace: str, log: _File | None, record: _File | Non
     if log is not None and record is not None and Path(log).resolve() == Path(record).resolve():
         raise InputError(
             f"log and record are the same file, {record}; give two different files",
-            name="log", got=log, expected="another file than record",
+            name="log", got=log, expected="a different file from record",
         )  # fmt: skip
 
 

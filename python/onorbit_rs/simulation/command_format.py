@@ -124,7 +124,9 @@ def read_commands(file: str | os.PathLike[str]) -> list[Command]:
     path = Path(file)
     if not path.is_file():
         raise NotFoundError(
-            f"no such file of commands: {path}; give the path of a file", path=str(path), kind="commands"
+            f"the command file {path} does not exist or is not a regular file; check the path",
+            path=str(path),
+            kind="commands",
         )
     content = read_bytes(path, _MOST, "commands")
     try:

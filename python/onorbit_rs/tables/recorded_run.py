@@ -176,7 +176,7 @@ class RecordedRun:
 
     @cached_property
     def is_about_earth(self) -> bool:
-        """True unless the reference orbit is around another planet than the Earth."""
+        """True unless the reference orbit is around a planet other than the Earth."""
         orbit = self._saved.scenario().orbit
         mu = None if orbit is None else orbit.build(self.folder).mu
         return mu is None or is_earth(mu)

@@ -122,8 +122,8 @@ class View(ABC):
             return
         self._is_lost = True
         warnings.warn(
-            f"the viewer was closed or failed ({error}); the run continues without the viewer; to view the "
-            "run later, open its recording with: onorbit show DIR",
+            f"the viewer was closed or failed ({error}); the run continues without the viewer; if it was "
+            "started with --out DIR, open its recording afterwards with: onorbit show DIR",
             stacklevel=2,
         )
 

@@ -62,7 +62,9 @@ fn nutation(t: f64, arguments: &[f64; 5]) -> [f64; 2] {
 ///
 /// `X` and `Y` are the first two elements of the last row of `R₁(-ε_A - Δε) R₃(-ψ̄ - Δψ) R₁(φ̄) R₃(γ̄)`.
 ///
-/// Source: IERS Conventions (2010), section 5.6.4 and table 5.2d; terms of `s` above 10 µas.
+/// Source: IERS Conventions (2010), section 5.6.4 and table 5.2d. Of the series for `s`, only the polynomial
+/// and the periodic terms with constant amplitudes above 10 µas are computed. The largest term that is
+/// omitted, `743.52 t² sin Ω` µas with the longitude `Ω` of the Moon's node, reaches about 55 µas in 2027.
 pub(super) fn pole(t: f64) -> Vector3<f64> {
     const S: [f64; 6] = [94.0, 3_808.65, -122.68, -72_574.11, 27.98, 15.62];
     let arguments = arguments(t);

@@ -93,8 +93,8 @@ pub enum GravityError {
     )]
     BelowSurface { distance: f64, minimum: f64 },
     #[error(
-        "{field} rotates with the planet, but the rotation is unknown; give 'earth', such as one that \
-         rotates about z, or use a zonal field"
+        "{field} rotates with the planet, but the orientation of the planet is unknown; give an 'earth', for \
+         example with rotation about_z, or use a zonal field (order 0)"
     )]
     NeedsEarth { field: String },
     #[error(

@@ -35,7 +35,7 @@ impl Simulation {
     /// - a closed loop or mimic joint whose constraint the initial state violates,
     /// - a setting that an external engine does not support,
     /// - a tool or a tracked frame that does not exist, or a reference in an unknown frame,
-    /// - a reference without a tool, or a controller that tracks another frame than the tool,
+    /// - a reference without a tool, or a controller that tracks a frame other than the tool,
     /// - a reference that starts too far from the frame or the joints that follow it,
     /// - a gripper without opposing fingers, or one whose opening is narrower than the object.
     pub fn check(&self) -> Result<(), SimulationError> {

@@ -84,7 +84,7 @@ fn difference_of_columns(got: &[String], expected: &[String]) -> String {
         quoted.collect::<Vec<_>>().join(", ")
     };
     match (missing_in(got, expected).as_str(), missing_in(expected, got).as_str()) {
-        ("", "") => "its columns are in another order than those of this simulation".to_owned(),
+        ("", "") => "the order of its columns differs from that in this simulation".to_owned(),
         (extra, "") => format!("it has the columns {extra}, which this simulation does not have"),
         ("", lacks) => format!("it lacks the columns {lacks} of this simulation"),
         (extra, lacks) => {

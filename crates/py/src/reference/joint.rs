@@ -30,7 +30,12 @@ fn table<'py>(value: Any<'_, 'py>, name: &str) -> PyResult<(usize, Input<'py>)> 
     let input = Input::new(value, name)?;
     match *input.shape() {
         [_, n] if n > 0 => Ok((n, input)),
-        _ => Err(wrong_shape(value.py(), name, "(K, n), one row per point", input.shape())),
+        _ => Err(wrong_shape(
+            value.py(),
+            name,
+            "(K, n) with n at least 1, one row per point and one column per joint",
+            input.shape(),
+        )),
     }
 }
 

@@ -301,7 +301,7 @@ impl PySimulation {
     ///     Wall-clock time between checkpoints, s; there are at most twenty checkpoints per second. Ctrl-C
     ///     causes a checkpoint as well.
     /// resume : Checkpoint, optional
-    ///     Checkpoint from which the run resumes with identical bits.
+    ///     Checkpoint from which the run resumes, with bit-identical results.
     ///
     /// Returns
     /// -------
@@ -359,11 +359,12 @@ impl PySimulation {
     ///     Planned end of the run, s. The last step ends at this time. Default: the planned end of ``resume``
     ///     or, without it, no planned end.
     /// resume : Checkpoint, optional
-    ///     Checkpoint from which the run resumes with identical bits.
+    ///     Checkpoint from which the run resumes, with bit-identical results.
     /// streamed : bool
-    ///     If True, memory is reserved for few rows only, and only the first and the last rows of ``resume``
-    ///     stay in memory, after they were checked; its columns may then be read from files in slices. Take
-    ///     the rows with :meth:`Stepper.columns`, and delete them with ``drop_rows(keep, checked=True)``.
+    ///     If True, memory is reserved for only a few rows. Of the rows of ``resume``, only the first and the
+    ///     last ones stay in memory; the others are removed once they have been checked. The columns of
+    ///     ``resume`` are read in blocks, so they may be arrays in files. Read the rows with
+    ///     :meth:`Stepper.columns`, and remove them with ``drop_rows(keep, checked=True)``.
     ///
     /// Returns
     /// -------

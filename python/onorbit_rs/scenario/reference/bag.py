@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from onorbit_rs import _core
-from onorbit_rs.common.counting import count
 from onorbit_rs.common.suggestions import did_you_mean, nearest
 from onorbit_rs.exceptions import FrameError, ReadError
 from onorbit_rs.scenario.bag_samples import Sample, read_samples
@@ -139,8 +138,8 @@ def _distinct(samples: list[Sample]) -> list[Sample]:
         found.append(sample)
     if len(found) < 2:
         raise _BadRecordingError(
-            f"it has {count(len(found), 'message', 'messages')} with the followed joints and different "
-            "times; a motion requires at least two"
+            "a motion requires at least two messages that contain the followed joints and have different "
+            f"times; found: {len(found)}"
         )
     return found
 
