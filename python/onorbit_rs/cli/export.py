@@ -27,7 +27,7 @@ def export(
     system: Annotated[
         str | None,
         typer.Option(
-            metavar="NAME", help="System to write; required for tables and ephemerides of several systems."
+            metavar="NAME", help="System of the table or ephemeris; required if the run has several systems."
         ),
     ] = None,
     mcap: Annotated[Path | None, typer.Option(metavar="FILE", help="Write an MCAP bag for ROS 2.")] = None,
