@@ -132,7 +132,7 @@ REFUSED = {
         lambda: MODEL.forward_dynamics_derivatives(Q, V, ALL), *shape("tau", [3, NV], "(n,)")
     ),
     "not a number": Bad(
-        lambda: MODEL.inverse_dynamics_derivatives(Q, V, np.full(NV, NAN)), "InputError", ("a holds NaN",)
+        lambda: MODEL.inverse_dynamics_derivatives(Q, V, np.full(NV, NAN)), "InputError", ("'a' holds NaN",)
     ),
     "no such frame": Bad(
         lambda: MODEL.free_floating_derivatives(Q, V, np.zeros(N), "tol"), "FrameError", ("tol", "tool")

@@ -130,7 +130,7 @@ def test_wrong_frames_and_options_are_refused(tmp_path: Path) -> None:
     with pytest.raises(FrameError, match="toool"):
         draft_capture(Source("servicer"), Source("target_satellite"), tool="toool")
     message = refusal("new", "servicer", "--target-frame", "handle")
-    assert "--target-frame applies only with a target" in message
+    assert "--target-frame handle applies only with a target" in message
     assert "no bundled robot is named 'nobody'" in refusal("new", "servicer", "nobody")
 
 

@@ -237,7 +237,7 @@ def test_pieces_in_a_scenario(tmp_path: Path) -> None:
         ("{link: base, pieces: 0}", "pieces: 0 is below the minimum, 1"),
         ("{link: base, pieces: 4, shape: {kind: sphere, radius: 1}}", "move 'pieces' into 'shape'"),
         ("{link: base, pieces: 4, pose: {position: [0, 0, 1]}}", "add 'shape' or omit 'pose'"),
-        ("{link: base, pieces: 4}", "none of them is a mesh"),
+        ("{link: base, pieces: 4}", "the link has none"),
     ],
 )
 def test_wrong_entries_of_a_scenario(entry: str, message: str, tmp_path: Path) -> None:

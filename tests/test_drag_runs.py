@@ -132,7 +132,7 @@ def test_invalid_settings_are_rejected_with_a_fix() -> None:
     with pytest.raises(FrameError, match="arm"):
         simulate(oo.Drag(AIR, surfaces={"arm": BALL}), still, robot)
     low = oo.Kepler.from_state((6.37e6, 0, 0), (0, 7900.0, 0), mu=MU)  # above the ground at the poles only
-    with pytest.raises(EffectError, match="below the surface"):
+    with pytest.raises(EffectError, match="below the ellipsoid of the Earth"):
         simulate(oo.Drag(AIR, surfaces=BALL), still, orbit=low)
 
 
@@ -151,7 +151,7 @@ def test_the_atmosphere_can_be_evaluated_directly() -> None:
     assert air.density_at(r[0], 10.0, earth=earth) == pytest.approx(
         air.density(altitude, latitude, longitude)
     )
-    with pytest.raises(EffectError, match="below the surface") as caught:
+    with pytest.raises(EffectError, match="below the ellipsoid of the Earth") as caught:
         air.density(-1.0)
     assert caught.value.got == -1.0
     with pytest.raises(EffectError, match="use an exponential atmosphere or NRLMSISE-00"):

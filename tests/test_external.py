@@ -227,7 +227,7 @@ WRONG: list[tuple[Callable[[oo.Stepper], None], type[Exception], str]] = [
     (lambda s: s.send("control", effort=[np.nan] * 7), Errors.InputError, "finite"),
     (lambda s: s.send("control", velocity=[np.inf] * 7), Errors.InputError, "finite"),
     (lambda s: s.send("control", position=1e99 * MOVE), Errors.InputError, "within"),
-    (lambda s: s.send("control", acceleration=MOVE), Errors.ControlError, "without velocities"),
+    (lambda s: s.send("control", acceleration=MOVE), Errors.ControlError, "without positions or velocities"),
     (lambda s: s.send_trajectory("control", [], np.zeros((0, 7))), Errors.ControlError, "is empty"),
     (lambda s: s.send_trajectory("control", [1, 1], [MOVE, MOVE]), Errors.InputError, "increase"),
     (lambda s: s.send_trajectory("control", [-1], [MOVE]), Errors.InputError, "at least 0 s"),

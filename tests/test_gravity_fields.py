@@ -89,7 +89,7 @@ def test_a_field_file_that_cannot_be_read_is_reported(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: oo.GravityField("egm08"), "expected egm2008, jgm3, zonal"),
+        (lambda: oo.GravityField("egm08"), "give one of the names egm2008, jgm3, zonal"),
         (lambda: oo.GravityField("egm2008", degree=71), "ends at degree 70"),
         (
             lambda: oo.GravityField("egm2008", degree=8, order=9),

@@ -118,7 +118,7 @@ def test_ellipses_by_their_elements() -> None:
         assert np.allclose(v[k], velocity, rtol=0, atol=1e-8)
     alike = oo.Kepler.states(t, **{name: values[0] for name, values in given.items()})[0]
     assert np.allclose(alike[0], r[0], rtol=0, atol=1e-9)
-    with pytest.raises(InputError, match=r"eccentricity is 1\.5 in state 0"):
+    with pytest.raises(InputError, match=r"eccentricity is 1\.5; it must be in \[0, 1\)"):
         oo.Kepler.states(t, **(given | {"eccentricity": 1.5}))
     with pytest.raises(ShapeError, match="raan"):
         oo.Kepler.states(t, **(given | {"raan": np.zeros(3)}))

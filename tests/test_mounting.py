@@ -238,7 +238,7 @@ def test_an_arm_need_not_be_a_valid_free_floating_robot(files: Path) -> None:
         oo.attach(bus, "plate", 3)  # type: ignore[arg-type]
     far = np.eye(4)
     far[0, 3] = 1e13
-    with pytest.raises(oo.exceptions.ModelError, match="between -1e12 and 1e12 m"):
+    with pytest.raises(oo.exceptions.ModelError, match=r"between -1e12 and 1e12 \(positions in m\)"):
         oo.attach(bus, "plate", files / "light.urdf", pose=far)
     with pytest.raises(oo.exceptions.NotFoundError):
         oo.attach(bus, "plate", files / "none.urdf")

@@ -232,6 +232,6 @@ def test_a_model_with_other_joints_is_refused(tmp_path: Path) -> None:
     model = oo.robots.load("servicer")
     trace = oo.Simulation(model, model.neutral(), np.zeros(model.nv)).run(0.01)
     other = oo.robots.load("target_satellite")
-    with pytest.raises(oo.exceptions.InputError, match="has 0 joints, but its trace has 7"):
+    with pytest.raises(oo.exceptions.InputError, match="has 0 joints, but the trace has 7"):
         oo.ros2.export_mcap(trace, tmp_path / "a.mcap", models=other)
     assert not list(tmp_path.iterdir())
