@@ -221,6 +221,6 @@ def test_what_mujoco_cannot_do_is_refused_with_the_remedy() -> None:
         "simulation": {"duration": "0.1 s", "time_step": "2 ms"},
     }
     with pytest.raises(
-        ScenarioError, match=r"contacts\[0\].friction.torsional: .*omit it, or use engine: native"
+        ScenarioError, match=r"contacts\[0\].friction.torsional: .*omit 'torsional', or use engine: native"
     ):
         oo.run(scenario)

@@ -115,7 +115,7 @@ def test_a_field_requires_its_planet_and_its_rotation() -> None:
     def simulation(field: Any, orbit: Any = orbit, **more: Any) -> Any:
         return oo.Simulation(ISS, q, v, orbit=orbit, environment=[field], **more)
 
-    with pytest.raises(GravityError, match="give 'earth'"):
+    with pytest.raises(GravityError, match="give an 'earth'"):
         simulation(oo.GravityField("egm2008"))
     simulation(oo.GravityField.zonal())
     simulation(oo.GravityField("egm2008"), earth=oo.Earth(rotation="about_z"))

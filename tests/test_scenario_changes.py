@@ -49,7 +49,11 @@ def test_entries_of_lists_are_changed_by_index() -> None:
         (".simulation=1", InputError, "not a path of keys"),
         ("=1", InputError, "not a path of keys"),
         ("simulation.duration.x=1", InputError, "has no such entry"),
-        ("controllers[0].kp=1", InputError, "the scenario has no list 'controllers'; did you mean 'controller'"),
+        (
+            "controllers[0].kp=1",
+            InputError,
+            "the scenario has no list 'controllers'; did you mean 'controller'",
+        ),
         ("robot.links.torso.mass=5", InputError, "no such entry; a campaign can vary robot.links"),
         ("environment[7].kind=drag", InputError, "environment"),
         ("controls=[]\ncontrols[0].kind=pid", InputError, "controls is an empty list; set the whole list"),
