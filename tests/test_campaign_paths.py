@@ -167,7 +167,7 @@ def test_the_nominal_data_are_not_changed() -> None:
         ),
         ("robot.links.torso.inertia", {"scale": {"uniform": [-1, 1]}}, "must be above zero"),
         ("robot.links.tool.mass", {"scale": {"uniform": [1, 2]}}, "use 'set'"),
-        ("orbit", NORMAL, "is a section; vary one of its entries: semi_major_axis, semi_latus"),
+        ("orbit", NORMAL, "the entry is a section; vary one of its entries: semi_major_axis, semi_latus"),
         ("orbit.kind", NORMAL, "only 'set: {choice: [...]}' applies"),
         ("orbit.kind", {"set": {"choice": ["keppler"]}}, "'keppler' is not one of 'kepler'"),
         ("simulation.record_every", {"set": {"uniform": [1, 9]}}, "must be a whole number"),

@@ -154,13 +154,14 @@ SPIN_DATA = {
 def test_a_reader_never_sees_a_mixture_of_two_runs(tmp_path: Path) -> None:
     """One process repeatedly replaces the run of a folder while another reads it."""
     program = """
-import sys, onorbit_rs as oo, onorbit_rs.simulation.finish as keeping
+import sys, time, onorbit_rs as oo, onorbit_rs.simulation.finish as keeping
 keeping.write_pictures = lambda *_, **__: None
 body = {"mass": 1.0, "inertia": [1.0, 1.0, 1.0]}
 for number in range(30):
     spin = {"robot": {"rigid_body": body}, "initial": {"angular_velocity": [0, 0, 0.1 + 0.01 * number]},
             "name": f"run {number}", "simulation": {"duration": 0.05, "time_step": 0.01}}
     oo.run(spin, sys.argv[1], force=True, quiet=True)
+    time.sleep(0.01)  # on a busy machine, the reader would otherwise see few of the runs
 """
     from onorbit_rs.exceptions import OnOrbitError
     from onorbit_rs.output.read import SavedRun

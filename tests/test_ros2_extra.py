@@ -75,8 +75,8 @@ def test_the_domain_is_that_of_the_environment(
     [
         (["--pace", "slow"], "pace is 'slow'; give one of real_time, fast, stepped"),
         (["--network", "wifi"], "network is 'wifi'; give 'loopback' or 'all'"),
-        (["--for", "0"], "the duration is 0.0 s; it must be a positive number"),
-        (["--for", "nan"], "the duration is nan s; it must be a positive number"),
+        (["--for", "0"], "the duration is 0.0; it must be a positive number of seconds"),
+        (["--for", "nan"], "the duration is nan; it must be a positive number of seconds"),
     ],
 )
 def test_wrong_options_are_named(

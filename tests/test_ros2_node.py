@@ -354,7 +354,7 @@ def test_bytes_that_are_not_dds_do_not_disturb_a_node(peer: Peer) -> None:
 def test_a_node_runs_once() -> None:
     with node_of(scenario(), pace="fast") as node:
         with pytest.raises(
-            oo.exceptions.InputError, match="the duration is nan s; it must be a positive number"
+            oo.exceptions.InputError, match="the duration is nan; it must be a positive number of seconds"
         ):
             node.spin(float("nan"))
         node.spin(0.01)

@@ -68,7 +68,7 @@ def test_a_full_disk_is_noticed_before_the_run(tmp_path: Path, monkeypatch: pyte
     monkeypatch.setattr(memory.shutil, "disk_usage", lambda path: usage)
     with pytest.raises(
         InputError,
-        match=r"on the disk of .*, where 1 GB is free; free space, or set simulation.record_every to",
+        match=r"where 1 GB is available; delete files to make room, or set simulation.record_every to",
     ):
         memory.check_size(built("free_tumble", LONG), tmp_path)
 

@@ -113,14 +113,15 @@ class Expander:
             yield self._inertia(path, place, change)
         elif isinstance(value, Part):
             keys = ", ".join(type(value).yaml_keys())
-            raise self.error(path, f"is a section; vary one of its entries: {keys}")
+            raise self.error(path, f"the entry is a section; vary one of its entries: {keys}")
         elif isinstance(value, (list, dict)):
             yield from self._vector(path, place, change)
         elif value is None or _is_number(value):
             yield self._number(path, place, change)
         else:
             raise self.error(
-                path, f"is {shortened(value)}, not a number; only 'set: {{choice: [...]}}' applies to it"
+                path,
+                f"the entry is {shortened(value)}, not a number; only 'set: {{choice: [...]}}' applies to it",
             )
 
     def _vector(self, path: str, place: Place, change: Change) -> Iterator[Dispersion]:
@@ -129,13 +130,15 @@ class Expander:
         entries = list(value.items() if isinstance(value, dict) else enumerate(value))
         if not entries:
             raise self.error(
-                path, "is empty; give values in the scenario, or vary it by 'set: {choice: [...]}'"
+                path,
+                "the entry is empty in the scenario; give it values there, or vary it with "
+                "'set: {choice: [...]}'",
             )
         if not all(_is_number(entry) for _, entry in entries):
             raise self.error(
                 path,
-                f"is {shortened(value)}, not a vector of numbers; vary one of its entries, or vary it by "
-                "'set: {choice: [...]}'",
+                f"the entry is {shortened(value)}, not a vector of numbers; vary one of its entries, or "
+                "vary it with 'set: {choice: [...]}'",
             )
         leaves = [place.inner(step, entry) for step, entry in entries]
         if change.vector == "components":

@@ -147,7 +147,8 @@ def _check_target(target: str | None, frame: str | None) -> None:
     """Raise InputError if the frame of the target is given without a target."""
     if target is None and frame is not None:
         raise InputError(
-            f"--target-frame {frame} applies only with a target; write onorbit new ROBOT TARGET, or omit it",
+            f"--target-frame {frame} applies only with a target; write onorbit new ROBOT TARGET, or omit "
+            "--target-frame",
             name="target_frame", got=frame,
         )  # fmt: skip
 

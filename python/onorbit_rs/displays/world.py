@@ -66,7 +66,7 @@ def _robot(name: str, model: Model) -> tuple[str, str, str, str]:
 
 
 def _controls(controller: Any) -> Iterable[str]:
-    """Yield the law of each control of a system, after the name of the control if it has one."""
+    """Yield the class name of the law of each control of a system, after ``name: `` if it has a name."""
     for control in controller if isinstance(controller, list | tuple) else [controller]:
         if control is None:
             continue

@@ -284,6 +284,6 @@ def check_duration(duration: float | None) -> None:
     """Raise an InputError if a duration, s, is not positive; None, for an open end, is valid."""
     if duration is not None and not (isinstance(duration, Real) and duration > 0.0):
         raise InputError(
-            f"the duration is {duration!r} s; it must be a positive number",
+            f"the duration is {duration!r}; it must be a positive number of seconds",
             name="duration", got=duration, expected="a positive number of seconds",
         )  # fmt: skip

@@ -51,7 +51,7 @@ class Ros1Bag:
         return len(self._topics) - 1
 
     def write(self, topic: int, times: NDArray[np.int64], messages: NDArray[np.uint8]) -> None:
-        """Write messages (T, size), in CDR, of times (T,), ns."""
+        """Write CDR-encoded messages, (T, size), with the timestamps ``times``, (T,), ns, to a topic."""
         connection = self._topics[topic]
         for time, data in zip(times.tolist(), messages, strict=True):
             self._writer.write(connection, time, STORE.cdr_to_ros1(data.tobytes(), connection.msgtype))

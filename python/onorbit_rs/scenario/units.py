@@ -142,7 +142,8 @@ def split_quantity(value: object) -> tuple[float, str]:
     if match is None or not match[2]:
         if isinstance(value, str) and match is None:
             raise QuantityError(
-                f"{shortened(value)} is not a number with a unit; write a value such as 0.5 or '0.5 deg'",
+                f"{shortened(value)} is not a number, with or without a unit; write a value such as 0.5 "
+                "or '0.5 deg'",
                 text=value, expected="a number",
             )  # fmt: skip
         return parse_quantity(value, NUMBER), ""

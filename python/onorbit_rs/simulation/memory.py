@@ -137,8 +137,8 @@ def _check_disk(built: Built | BuiltWorld, folder: Path, size: float, compress: 
         other = "use --compress (compress=True), " if fits else ""
         raise _too_large(
             f"the run records {rows_of(built)} rows, about {_text(size)}, and needs {_text(needed)} on "
-            f"the disk of {folder}, where {_text(space)} is free; free space, {other}or set "
-            f"simulation.record_every to {every}", built, every,
+            f"the disk of {folder}, where {_text(space)} is available; delete files to make room, "
+            f"{other}or set simulation.record_every to {every}", built, every,
         )  # fmt: skip
 
 

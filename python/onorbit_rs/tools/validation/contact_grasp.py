@@ -56,7 +56,8 @@ def held(normal: float, load: float, swing: float, lasts: float) -> float:
     half = int(np.argmin(np.abs(capsule_trace.time - lasts / 2)))
     moved = capsule_trace.q[[half, -1], 2]
     if not abs(moved[0]) < 1e-3:
-        raise ValueError(f"the capsule slipped by {moved[0]:.3g} m in the first half; the limit is 1e-3 m")
+        slipped = f"the capsule slipped by {abs(moved[0]):.3g} m in the first half of the run"
+        raise ValueError(f"{slipped}; the limit is 1e-3 m")
     return float(abs(moved[1] - moved[0]) / (lasts / 2))
 
 

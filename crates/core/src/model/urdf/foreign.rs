@@ -5,7 +5,8 @@ use super::error::{UrdfError, UrdfProblem, list};
 use crate::model::ModelWarning;
 use roxmltree::{Document, Error as XmlError, Node, ParsingOptions};
 
-/// Largest number of tags, texts and comments in a file. The file of a large robot contains 10⁴ of them.
+/// Largest number of XML nodes (elements, text nodes, comments and others) in a file. The file of a large
+/// robot contains about 10⁴ nodes.
 const MAX_NODES: u32 = 1_000_000;
 /// Names of children of `<robot>`, besides links, joints and materials, that are ignored without a warning.
 const KNOWN: &[&str] = &[
