@@ -168,11 +168,11 @@ def test_the_estimate_states_what_compression_saves(tmp_path: Path, monkeypatch:
     memory.check_size(built, tmp_path, compress=True)  # without a warning, which would be an error
     free = 1.8 * size
     monkeypatch.setattr(memory.shutil, "disk_usage", lambda path: SimpleNamespace(free=free))
-    with pytest.raises(InputError, match=r"free space, use --compress \(compress=True\), or set"):
+    with pytest.raises(InputError, match=r"room, use --compress \(compress=True\), or set"):
         memory.check_size(built, tmp_path)
     memory.check_size(built, tmp_path, compress=True)
     free = 1.5 * size
-    with pytest.raises(InputError, match=r"free space, or set simulation.record_every"):
+    with pytest.raises(InputError, match=r"room, or set simulation.record_every"):
         memory.check_size(built, tmp_path, compress=True)
 
 

@@ -146,7 +146,7 @@ def test_ctrl_c_terminates_the_viewer(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 GONE = """
-import os, socket, threading
+import os, socket, threading, time
 from onorbit_rs.viewer import screen
 import rerun as rr
 
@@ -165,18 +165,20 @@ try:
     recording.flush(timeout_sec=5.0)
 except Exception:
     print("said", flush=True)
+time.sleep(1.0)  # the log is printed by another thread
 os._exit(0)  # to disconnect would be to wait for nobody
 """
 
 
 def test_rerun_prints_no_log() -> None:
-    quiet, loud = (
-        subprocess.run(
+    both = [
+        subprocess.Popen(
             [sys.executable, "-c", GONE],
             env={name: text for name, text in os.environ.items() if name != "RUST_LOG"} | log,
-            capture_output=True, text=True, check=True,
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
         )
         for log in ({}, {"RUST_LOG": "error"})
-    )  # fmt: skip
-    assert quiet.stdout == "said\n" and quiet.stderr == ""
-    assert "ERROR" in loud.stderr  # it can be turned on
+    ]  # fmt: skip
+    quiet, loud = (process.communicate() for process in both)
+    assert quiet == ("said\n", "")
+    assert loud[0] == "said\n" and "ERROR" in loud[1]  # it can be turned on
