@@ -27,7 +27,6 @@ from onorbit_rs.campaigns.statistics import (
     significant_correlation,
     wilson,
 )
-from onorbit_rs.simulation import finish
 
 
 @pytest.mark.parametrize("successes", [0, 1, 17, 99, 100])
@@ -129,19 +128,6 @@ def test_extreme_cases_are_named_by_their_numbers_and_have_a_value() -> None:
     result = Result("drift", "drift", "m", np.array([1.0, math.nan, 3.0, -math.inf]))
     assert _worst([result], [10, 11, 12, 13]).rows == [["drift", "12, 10"]]
     assert next(percentile_rows([result], [10, 11, 12, 13]))[-1] == 12
-
-
-@pytest.mark.usefixtures("no_campaign_report")
-def test_cases_without_success_are_kept_in_full(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    drawn = []  # drawing takes most of the time of a run with a folder
-    monkeypatch.setattr(finish, "write_pictures", lambda *_, **__: drawn.append(True))
-    rotation = sorted(oo.campaign(spin(4))["base_rotation_max_rad"].to_pylist())
-    success = {"base_rotation_max_rad": {"below": rotation[-1]}}
-    table = oo.campaign(spin(4, success=success, keep={"failures": "full"}), tmp_path)
-    (bad,) = [row["case"] for row in table.to_pylist() if not row["success"]]
-    assert [folder.name for folder in (tmp_path / "failures").iterdir()] == [f"case_{bad}"]
-    assert (tmp_path / "failures" / f"case_{bad}" / "trace.npz").exists()
-    assert drawn == [True], "figures and recording of this case alone"
 
 
 def test_the_bundled_campaign_is_valid() -> None:

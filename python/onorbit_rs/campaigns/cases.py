@@ -1,4 +1,4 @@
-"""Runs one case of a campaign."""
+"""Runs one case of a campaign: for a row of the table, or as an ordinary run in a folder."""
 
 from __future__ import annotations
 
@@ -11,17 +11,21 @@ import numpy as np
 from onorbit_rs._core import WorldTrace
 from onorbit_rs.campaigns.kept_columns import kept_columns
 from onorbit_rs.campaigns.numbers import numbers_of
+from onorbit_rs.common.files import exists
 from onorbit_rs.common.printable import printable
-from onorbit_rs.exceptions import SimulationError
+from onorbit_rs.exceptions import OutputFolderError, SimulationError
 from onorbit_rs.output import summarize, summarize_world
 from onorbit_rs.output.clearance import add_clearances, found_clearances
+from onorbit_rs.output.manifest import SUMMARY
 from onorbit_rs.scenario import WorldScenario
 from onorbit_rs.scenario.build import Built, build
 from onorbit_rs.scenario.build_world import BuiltWorld, build_world
 from onorbit_rs.scenario.load import check
+from onorbit_rs.simulation.run import run
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from pathlib import Path
 
     from numpy.typing import NDArray
 
@@ -78,6 +82,27 @@ def run_case(plan: Plan, case: int, check_stop: Callable[[], None] = lambda: Non
     except Exception as error:
         status = "diverged" if isinstance(error, SimulationError) else "failed"
         return Outcome(case, status, _text(error), values, _numbers_before(error, built, status))
+
+
+def keep_case(plan: Plan, case: int, folder: Path) -> Outcome:
+    """Run a case in ``folder`` as an ordinary run, and return its outcome without numbers.
+
+    Raises
+    ------
+    OutputFolderError
+        If the results cannot be written, as on a full disk.
+    """
+    data, values = plan.case(case)
+    try:
+        run(check(data, None, {}), folder, force=True, quiet=True)
+    except OutputFolderError:
+        raise
+    except Exception as error:
+        text, trace = _text(error), getattr(error, "trace", None)
+        if trace is not None and len(trace) and not exists(folder / SUMMARY):
+            raise OutputFolderError(f"cannot write {folder}: {text}", path=str(folder)) from error
+        return Outcome(case, "failed", text, values, {})
+    return Outcome(case, "complete", None, values, {})
 
 
 class Stopped(Exception):

@@ -1,4 +1,4 @@
-"""Runs cases with Python code in the loop, in processes of this machine that are connected by pipes."""
+"""Runs cases in processes of this machine that are connected by pipes."""
 
 from __future__ import annotations
 
@@ -13,8 +13,11 @@ from typing import TYPE_CHECKING
 from onorbit_rs.campaigns.cases import Outcome, Stopped
 from onorbit_rs.campaigns.pool import WorkerDied, pooled
 from onorbit_rs.common.processes import packed, receive, send
+from onorbit_rs.exceptions import OnOrbitError
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from onorbit_rs.campaigns.plan import Plan
 
 _COMMAND = (sys.executable, "-m", "onorbit_rs.campaigns.worker")
@@ -40,7 +43,12 @@ class _InProcess:
                 has_begun = False
                 receive(process.stdout)  # the number of the case, when it begins
                 has_begun = True
-                yield receive(process.stdout)
+                found = receive(process.stdout)
+                if isinstance(found, OnOrbitError):
+                    raise found
+                yield found
+        except OnOrbitError:  # of the worker, which continues to run
+            raise
         except (EOFError, OSError, ValueError) as error:
             raise WorkerDied(self._end(process), during_case=has_begun) from error
 
@@ -92,12 +100,15 @@ def _kill(process: subprocess.Popen[bytes]) -> None:
 
 
 @contextmanager
-def on_processes(plan: Plan, cases: Sequence[int], workers: int) -> Iterator[Iterator[Outcome]]:
+def on_processes(
+    plan: Plan, cases: Sequence[int], workers: int, keep_in: Path | None = None
+) -> Iterator[Iterator[Outcome]]:
     """Run cases in processes during the block; yield an iterator of outcomes in order of completion.
 
     A worker that dies is replaced, and its unfinished cases are run again. A case during which
-    ``MOST_DEATHS`` workers died counts as failed.
+    ``MOST_DEATHS`` workers died counts as failed. With ``keep_in``, the folder of the campaign, each case is
+    an ordinary run in a folder of its own, which has no final name yet.
     """
-    greeting = packed((plan, sys.path))
+    greeting = packed((plan, sys.path, keep_in))
     with pooled(cases, workers, lambda: _InProcess(greeting)) as outcomes:
         yield outcomes

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import os
 import re
-import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from onorbit_rs.campaigns.cases import Outcome
+from onorbit_rs.campaigns.failures import write_failures
 from onorbit_rs.campaigns.load import load_campaign
 from onorbit_rs.campaigns.nominal import check_nominal
 from onorbit_rs.campaigns.on_processes import on_processes
@@ -18,7 +18,7 @@ from onorbit_rs.campaigns.on_threads import on_threads
 from onorbit_rs.campaigns.plan import Plan, digest_of, plan_of
 from onorbit_rs.campaigns.progress import campaign_progress
 from onorbit_rs.campaigns.report import write_report
-from onorbit_rs.campaigns.storage import FAILURES, CampaignFolder, is_campaign
+from onorbit_rs.campaigns.storage import CampaignFolder, is_campaign
 from onorbit_rs.campaigns.table import arrow, check_conditions, rows_of, table_of
 from onorbit_rs.campaigns.write import write_campaign, write_cases, write_columns
 from onorbit_rs.common.counting import count
@@ -116,9 +116,9 @@ def campaign(
             table = _table(columns, plan, conditions)
             write_cases(folder, table)
             write_columns(folder, plan, range(plan.cases))
-            write_failures(folder, plan, columns, quiet=quiet)
             with doing("writing the report", quiet=quiet):
                 write_report(folder, loaded.document, columns, plan.value_names)
+            write_failures(folder, plan, columns, conditions, worker_count, quiet=quiet)
         return table
 
 
@@ -220,25 +220,6 @@ def campaign_case(
     if folder is not None and is_campaign(folder):
         folder = folder / f"case_{case}"
     return run(scenario, folder, force=force, quiet=quiet)
-
-
-def write_failures(folder: CampaignFolder, plan: Plan, columns: dict[str, list[Any]], *, quiet: bool) -> None:
-    """Write the folder of an ordinary run for every case without success, unless it exists.
-
-    Does nothing unless ``failures`` of ``keep`` is ``full``. Each of these cases is run again, so that
-    figures and recordings need not be kept in memory. An error of the case is recorded in its folder and not
-    raised.
-    """
-    if plan.keep.failures != "full":
-        return
-    numbers = [case for case, has in zip(columns["case"], columns["success"], strict=True) if not has]
-    for number in numbers:
-        out = folder.path / FAILURES / f"case_{number}"
-        if out.exists():
-            continue
-        with suppress(Exception), warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            run(check(plan.case(number).scenario, None, {}), out, quiet=quiet)
 
 
 def _checked_workers(workers: int | None) -> int:

@@ -18,7 +18,15 @@ from typing import Any
 import numpy as np
 
 from onorbit_rs.campaigns.cases import Outcome
-from onorbit_rs.common.files import exists, file_kind, is_regular, output_errors, remove, replacing
+from onorbit_rs.common.files import (
+    exists,
+    file_kind,
+    is_real_folder,
+    is_regular,
+    output_errors,
+    remove,
+    replacing,
+)
 from onorbit_rs.exceptions import (
     OutputFolderError,
     OutputInUseError,
@@ -26,13 +34,18 @@ from onorbit_rs.exceptions import (
     OutputNotWritableError,
     ReadError,
 )
+from onorbit_rs.output import OutputFolder
 from onorbit_rs.output.errors import not_writable
 from onorbit_rs.output.lock import LOCK, FolderLock, owner_of
+from onorbit_rs.output.manifest import FIGURES, MANIFEST, SCENARIO
 
 CAMPAIGN, TABLE, COLUMNS, REPORT = "campaign.yaml", "cases.parquet", "columns.parquet", "report.html"
 PARTS, FAILURES, IDENTITY = "cases", "failures", "identity.json"
+REASON = "reason.txt"
+"""File with the reason why a case is not a success, in the folder of its results."""
 _PART = re.compile(r"part-(\d{8})\.json")
 _OWN = re.compile(rf"(part|columns)-\d{{8}}\.(json|npz)|{re.escape(IDENTITY)}|\.partial-[0-9a-f]+")
+_FAILURE = re.compile(r"(\.partial-)?case_\d+")
 _EVERY_S = 1.0
 """Wall-clock time between two parts, s; a process that is killed loses the outcomes since the last part."""
 _MOST_ROWS = 500
@@ -103,6 +116,9 @@ class CampaignFolder:
             for file in sorted((self.path / PARTS).iterdir()):
                 if _OWN.fullmatch(file.name):
                     remove(file)
+        for failed in (self.path / FAILURES).glob("*case_*"):
+            if _FAILURE.fullmatch(failed.name):
+                _remove_failure(failed)
 
     def __enter__(self) -> CampaignFolder:
         """Return the folder."""
@@ -221,6 +237,16 @@ class CampaignFolder:
         return rows
 
 
+def failure(folder: Path, case: int) -> Path:
+    """Return the folder for the results of a case without success."""
+    return folder / FAILURES / f"case_{case}"
+
+
+def unfinished_failure(folder: Path, case: int) -> Path:
+    """Return the folder of the results of a case without success until they are complete."""
+    return folder / FAILURES / f".partial-case_{case}"
+
+
 def is_campaign(folder: Path) -> bool:
     """Return True if a folder contains a campaign."""
     return is_regular(folder / PARTS / IDENTITY)
@@ -246,6 +272,24 @@ def _make(folder: Path) -> None:
         if isinstance(error, OutputFolderError):
             raise
         raise not_writable(folder, error) from error
+
+
+def _remove_failure(folder: Path) -> None:
+    """Remove the results of a case; the folder remains if it contains other files.
+
+    Raises
+    ------
+    OutputFolderError
+        If the results contain a figure that was edited, or another process uses the folder.
+    """
+    if not exists(folder / MANIFEST):  # the run did not begin
+        remove(folder / SCENARIO)
+    with OutputFolder.claim(folder, force=True):
+        remove(folder / REASON)
+    remove(folder / LOCK)
+    for empty in (folder / FIGURES, folder):
+        if is_real_folder(empty) and not any(empty.iterdir()):
+            empty.rmdir()
 
 
 def _is_empty(folder: Path) -> bool:
