@@ -1,12 +1,16 @@
-"""Campaigns whose cases kill their worker process once, and the check that no case is lost or repeated."""
+"""Campaigns whose workers are killed, by a case or at random; no case may be lost or repeated."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+import random
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+import psutil
 import pytest
 from campaign_files import BODY, campaign_of, same
 
@@ -65,6 +69,75 @@ def check_killed_workers(
     with monkeypatch.context() as patched:  # the markers exist, so no case kills this process
         patched.setattr(campaign_run, "on_processes", campaign_run.on_threads)
         assert same(table).equals(same(campaign_run.campaign(campaign)))
+
+
+SLOW = """
+import time
+import numpy as np
+
+class Law:
+    def __init__(self, pause):
+        self.pause = pause
+
+    def update(self, t, state):
+        time.sleep(self.pause)
+        return np.zeros(len(state.joints))
+"""
+"""A controller that makes a case of five steps last about 0.1 s."""
+
+
+def check_random_kills(
+    folder: Path,
+    cases: int,
+    run: Callable[[dict[str, Any]], Any],
+    workers: Callable[[], list[psutil.Process]],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Runs a campaign during which random workers are killed at random instants."""
+    (folder / "slow.py").write_text(SLOW)
+    seen = recorded(monkeypatch)
+    with killing(workers, most=max(1, cases // 20)) as killed:
+        table = run(_slow(folder, cases, pause=0.02))
+    print(f"{len(killed)} workers killed at random during {cases} cases")
+    assert killed
+    assert sorted(seen) == list(range(cases)), "no case is lost, and none is recorded twice"
+    with monkeypatch.context() as patched:
+        patched.setattr(campaign_run, "on_processes", campaign_run.on_threads)
+        expected = same(campaign_run.campaign(_slow(folder, cases, pause=0.0)))
+    assert same(table).equals(expected)
+    assert set(table["status"].to_pylist()) == {"complete"}
+
+
+def _slow(folder: Path, cases: int, pause: float) -> dict[str, Any]:
+    controller = {"kind": "python", "file": str(folder / "slow.py"), "class": "Law"}
+    scenario = BODY | {"robot": "humanoid_torso", "controller": controller | {"arguments": {"pause": pause}}}
+    scenario |= {"simulation": {"duration": 5e-3, "time_step": 1e-3}}
+    return campaign_of(scenario, {"initial.angular_velocity": {"add": {"normal": [0.0, "1 deg/s"]}}}, cases)
+
+
+@contextmanager
+def killing(workers: Callable[[], list[psutil.Process]], most: int) -> Iterator[list[int]]:
+    """Kills up to ``most`` random workers during the block, one every 1.3 s on average.
+
+    Yields the list of their process numbers.
+    """
+    killed: list[int] = []
+    is_over, chance = threading.Event(), random.Random(20261128)
+
+    def kill() -> None:
+        while len(killed) < most and not is_over.wait(0.3 + chance.expovariate(1.0)):
+            with suppress(psutil.Error, IndexError):  # it has just ended, or none has started
+                victim = chance.choice(workers())
+                victim.kill()
+                killed.append(victim.pid)
+
+    thread = threading.Thread(target=kill)
+    thread.start()
+    try:
+        yield killed
+    finally:
+        is_over.set()
+        thread.join()
 
 
 def recorded(monkeypatch: pytest.MonkeyPatch) -> list[int]:

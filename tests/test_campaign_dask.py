@@ -14,7 +14,7 @@ from typing import Any
 import psutil
 import pytest
 from campaign_files import BODY, same, spin
-from killed_workers import check_killed_workers, number_of_cases
+from killed_workers import check_killed_workers, check_random_kills, number_of_cases
 
 import onorbit_rs as oo
 from onorbit_rs.campaigns import on_dask
@@ -72,6 +72,21 @@ def test_killed_workers_lose_no_case_and_repeat_none(
         tmp_path,
         number_of_cases(12),
         lambda campaign: oo.campaign(campaign, tmp_path / "out", cluster=cluster),
+        monkeypatch,
+    )
+
+
+def test_workers_killed_at_random_lose_no_case(
+    cluster: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def workers() -> list[psutil.Process]:
+        return [one for one in psutil.Process().children() if "spawn_main" in " ".join(one.cmdline())]
+
+    check_random_kills(
+        tmp_path,
+        number_of_cases(30),
+        lambda campaign: oo.campaign(campaign, tmp_path / "out", cluster=cluster),
+        workers,
         monkeypatch,
     )
 

@@ -143,10 +143,10 @@ def test_the_nominal_data_are_not_changed() -> None:
 @pytest.mark.parametrize(
     ("path", "change", "words"),
     [
-        ("inital.joints", NORMAL, "no such entry; did you mean 'initial'"),
+        ("inital.joints", NORMAL, "no such entry; did you mean 'initial.joints'"),
         ("initial.joint", NORMAL, "did you mean 'initial.joints'"),
         ("initial.joints.arm_joint_9", NORMAL, "did you mean 'initial.joints.arm_joint"),
-        ("robot.links.toros.mass", {"scale": {"uniform": [1, 2]}}, "did you mean 'robot.links.torso'"),
+        ("robot.links.toros.mass", {"scale": {"uniform": [1, 2]}}, "did you mean 'robot.links.torso.mass'"),
         ("robot.links.*.mas", {"scale": {"uniform": [1, 2]}}, "no such entry; did you mean"),
         ("initial.joints", {"add": {"normal": [0, "1 kg"]}}, "is not an angle or a length"),
         ("initial.joints", {"add": {"normal": [0, "1 mm"]}}, "is revolute; give an angle"),

@@ -14,7 +14,7 @@ from typing import Any
 import psutil
 import pytest
 from campaign_files import BODY, campaign_of, same, spin, write
-from killed_workers import check_killed_workers, number_of_cases
+from killed_workers import check_killed_workers, check_random_kills, number_of_cases
 
 import onorbit_rs as oo
 from onorbit_rs.campaigns import run as campaign_run
@@ -117,6 +117,16 @@ def test_killed_workers_lose_no_case_and_repeat_none(tmp_path: Path, monkeypatch
         tmp_path,
         number_of_cases(12),
         lambda campaign: oo.campaign(campaign, tmp_path / "out", workers=2),
+        monkeypatch,
+    )
+
+
+def test_workers_killed_at_random_lose_no_case(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    check_random_kills(
+        tmp_path,
+        number_of_cases(30),
+        lambda campaign: oo.campaign(campaign, tmp_path / "out", workers=2),
+        workers,
         monkeypatch,
     )
 

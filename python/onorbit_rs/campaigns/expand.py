@@ -21,7 +21,6 @@ from onorbit_rs.campaigns.dispersions import (
 )
 from onorbit_rs.campaigns.distributions import Amount, Change, Distribution, amount
 from onorbit_rs.campaigns.places import Place, Places, adapter
-from onorbit_rs.common.suggestions import nearest
 from onorbit_rs.exceptions import OnOrbitError, QuantityError
 from onorbit_rs.scenario import units
 from onorbit_rs.scenario.attitude import quaternion_of
@@ -70,7 +69,7 @@ class Expander:
         places = self.places.find(path)
         if not places:
             known = self.places.known(path)
-            near = nearest(path, known)
+            near = self.places.nearest(path)
             few = f"; known entries: {', '.join(known)}" if 0 < len(known) <= 16 else ""
             raise self.error(path, f"the scenario has no such entry{_hint(near) or few}")
         if "*" in path:

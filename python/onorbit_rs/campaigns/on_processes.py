@@ -107,7 +107,7 @@ def on_processes(
 
     A worker that dies is replaced, and its unfinished cases are run again. A case during which
     ``MOST_DEATHS`` workers died counts as failed. With ``keep_in``, the folder of the campaign, each case is
-    an ordinary run in a folder of its own, which has no final name yet.
+    an ordinary run, and its folder has no final name yet.
     """
     greeting = packed((plan, sys.path, keep_in))
     with pooled(cases, workers, lambda: _InProcess(greeting)) as outcomes:

@@ -14,6 +14,7 @@ from pydantic import TypeAdapter
 
 from onorbit_rs.campaigns.link_inertias import link_inertias
 from onorbit_rs.common.coordinates import JOINTS_Q
+from onorbit_rs.common.suggestions import nearest
 from onorbit_rs.scenario.attitude import Attitude
 from onorbit_rs.scenario.initial import InitialState
 from onorbit_rs.scenario.joint_values import joint_values
@@ -131,14 +132,31 @@ class Places:
     def known(self, path: str) -> list[str]:
         """Return the names of all entries at the deepest level to which the path leads."""
         steps = self._steps(path)
-        for length in range(len(steps) - 1, -1, -1):
-            found = list(self._matches(Place((), self.scenario), steps[:length]))
-            if found:
-                names = [f"{place.name}.{key}".removeprefix(".") for place in found
-                         for key in self._children(place)]  # fmt: skip
-                if names:
-                    return names
-        return []
+        parents, _ = self._deepest(steps)
+        names = (
+            f"{place.name}.{key}".removeprefix(".") for place in parents for key in self._children(place)
+        )
+        return list(names)
+
+    def nearest(self, path: str) -> str | None:
+        """Return the path to which a misspelt path probably refers, or None."""
+        steps = self._steps(path)
+        parents, depth = self._deepest(steps)
+        near = nearest(steps[depth], [key for place in parents for key in self._children(place)])
+        if near is None:
+            return None
+        shorter = [*steps[:depth], near]
+        meant = ".".join([*shorter, *steps[depth + 1 :]])
+        found = meant if self.find(meant) else ".".join(shorter)
+        return re.sub(r"\.(\d+)(?=\.|$)", r"[\1]", found)
+
+    def _deepest(self, steps: list[str]) -> tuple[list[Place], int]:
+        """Return the deepest entries with children to which the steps lead, and the number of these steps."""
+        for depth in range(len(steps) - 1, -1, -1):
+            found = list(self._matches(Place((), self.scenario), steps[:depth]))
+            if any(self._children(place) for place in found):
+                return found, depth
+        return [], 0
 
     def _matches(self, place: Place, steps: list[str]) -> Iterator[Place]:
         if not steps:

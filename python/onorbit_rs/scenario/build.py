@@ -18,6 +18,7 @@ from onorbit_rs.scenario.engine import build_engine
 from onorbit_rs.scenario.environment import PythonEffect
 from onorbit_rs.scenario.environment.earth import build_earth
 from onorbit_rs.scenario.environment.surfaces import build_surfaces
+from onorbit_rs.scenario.faults import Faults
 from onorbit_rs.scenario.locations import dotted, located, scenario_error
 from onorbit_rs.scenario.loops import closed_start
 from onorbit_rs.scenario.orbit import NumericalOrbit
@@ -74,14 +75,26 @@ def build(scenario: Scenario, *, runs_code: bool = True) -> Built:
     OnOrbitError
         A subclass for the kind of error; its message starts with file, line and key.
     """
-    check_record_every(scenario)
-    model = scenario.robot.build(scenario)
-    build_watches(scenario, {"": model})
-    around = build_environment(scenario, model, runs_code=runs_code)
-    with located(scenario, "initial"):
-        q, v = scenario.initial.build(model, around.orbit)
-    q, v = closed_start(scenario, model, q, v)
-    built = build_around(scenario, model, (q, v), around, runs_code=runs_code)
+    faults, model, around, state = Faults(), None, None, None
+    with faults.kept():
+        check_record_every(scenario)
+    with faults.kept():
+        model = scenario.robot.build(scenario)
+    with faults.kept():
+        around = build_environment(scenario, model, runs_code=runs_code)
+    if model is not None:
+        with faults.kept():
+            build_watches(scenario, {"": model})
+        with faults.kept(), located(scenario, "initial"):
+            state = scenario.initial.build(model, None if around is None else around.orbit)
+        with faults.kept():
+            check_robot(scenario, model)
+            if faults and around is not None:  # otherwise the controllers are checked below
+                controlled(scenario, model, model.neutral(), around.orbit, runs_code=runs_code)
+    faults.check()
+    assert model is not None and around is not None and state is not None  # otherwise there is a fault
+    state = closed_start(scenario, model, *state)
+    built = build_around(scenario, model, state, around, runs_code=runs_code)
     for message in built.warnings:
         warn_user(message)
     return built
@@ -97,39 +110,52 @@ def build_around(
 ) -> Built:
     """Return the objects of a scenario after a trial step, given its initial state and environment."""
     (q, v), (orbit, earth, effects) = state, around
-    tool = scenario.tracked_tool
-    with located(scenario, "tool"):
-        if tool is not None:
-            model.frame_pose(q, tool)  # raises an error for an unknown frame
-    _check_surfaces(scenario, model)
     actuators = build_actuators(scenario, model)
-    flight = Flight(model, q, v, orbit, earth)
-    try_effects(scenario, effects, flight)
-    with located(scenario, "engine"):
+    flight, faults = Flight(model, q, v, orbit, earth), Faults()
+    with faults.kept():
+        try_effects(scenario, effects, flight)
+    with faults.kept(), located(scenario, "engine"):
         engine = build_engine(scenario, model)
+    with faults.kept():
+        controls = controlled(scenario, model, q, orbit, runs_code=runs_code)
+    faults.check()
 
-    def simulation() -> tuple[_core.Simulation, Any]:
-        controller, reference = controlled(scenario, model, q, orbit, runs_code=runs_code)
+    def simulation(controller: Any, reference: Any) -> _core.Simulation:
         with located(scenario, "simulation"), about_start(scenario), about_controllers(scenario):
-            built = _core.Simulation(
+            return _core.Simulation(
                 model, q, v, orbit=orbit, earth=earth, gravity_mode=scenario.gravity_mode,
-                environment=effects, controller=controller, reference=reference, tool=tool,
-                actuators=actuators, engine=engine, **scenario.simulation.arguments(),
+                environment=effects, controller=controller, reference=reference,
+                tool=scenario.tracked_tool, actuators=actuators, engine=engine,
+                **scenario.simulation.arguments(),
             )  # fmt: skip
-        return built, reference
 
-    # a Python controller may keep state from the trial step, so the run gets a new controller
-    try_one_step(scenario, model, simulation()[0])
+    try_one_step(scenario, model, simulation(*controls))
     messages = tuple(warnings_of(scenario, flight, effects))
-    return Built(scenario, model, orbit, earth, q, v, *simulation(), messages)
+    # a Python controller may keep state from the trial step, so the run gets a new controller
+    controls = controlled(scenario, model, q, orbit, runs_code=runs_code)
+    return Built(scenario, model, orbit, earth, q, v, simulation(*controls), controls[1], messages)
+
+
+def check_robot(scenario: Scenario, model: _core.Model) -> None:
+    """Raise the errors of the tool, the surfaces and the actuators, which the robot determines."""
+    faults, tool = Faults(), scenario.tracked_tool
+    with faults.kept(), located(scenario, "tool"):
+        if tool is not None:
+            model.frame_pose(model.neutral(), tool)  # raises an error for an unknown frame
+    with faults.kept():
+        _check_surfaces(scenario, model)
+    with faults.kept():
+        build_actuators(scenario, model)
+    faults.check()
 
 
 def build_actuators(scenario: Scenario, model: _core.Model) -> list[_core.Brake]:
     """Return the actuators of the robot; errors are located at the entry of each."""
-    found = []
+    found, faults = [], Faults()
     for index, actuator in enumerate(scenario.actuators):
-        with located(scenario, "actuators", index):
+        with faults.kept(), located(scenario, "actuators", index):
             found.append(actuator.build(model))
+    faults.check()
     return found
 
 
@@ -156,14 +182,17 @@ def build_environment(
 
     If ``runs_code`` is False, effects written in Python are inspected, not executed, and exert no wrenches.
     """
-    duration, folder = scenario.simulation.duration, scenario.folder
-    with located(scenario, "orbit"):
+    duration, folder, faults = scenario.simulation.duration, scenario.folder, Faults()
+    with faults.kept(), located(scenario, "orbit"):
         orbit = None if scenario.orbit is None else scenario.orbit.build(folder)
-    with located(scenario, "epoch" if scenario.earth is None else "earth"):
-        earth = build_earth(scenario.earth, scenario.epoch, orbit, folder)
-        if earth is not None:
-            earth.rotation(duration)  # raises an error if the table ends before the run
-    effects = build_effects(scenario, model, runs_code=runs_code)
+    if not faults:  # the epoch may be that of the orbit
+        with faults.kept(), located(scenario, "epoch" if scenario.earth is None else "earth"):
+            earth = build_earth(scenario.earth, scenario.epoch, orbit, folder)
+            if earth is not None:
+                earth.rotation(duration)  # raises an error if the table ends before the run
+    with faults.kept():
+        effects = build_effects(scenario, model, runs_code=runs_code)
+    faults.check()
     with located(scenario, "orbit"):
         if isinstance(scenario.orbit, NumericalOrbit) and orbit is not None:
             orbit = scenario.orbit.integrate(orbit, effects, earth)
@@ -180,12 +209,14 @@ def build_effects(
     If ``runs_code`` is False, effects written in Python are inspected, not executed, and exert no wrenches.
     """
     effects: list[_core.Effect] = []
+    faults = Faults()
     for index, effect in enumerate(scenario.effects):
-        with located(scenario, "environment", index):
+        with faults.kept(), located(scenario, "environment", index):
             if isinstance(effect, PythonEffect) and not runs_code:
                 effects.append(effect.inspect(scenario.folder))
             else:
                 effects.append(effect.build(model, scenario.folder))
+    faults.check()
     return effects
 
 
@@ -228,25 +259,32 @@ def controlled(
             law = scenario.controller.build_law(model, tool, folder, runs_code=runs_code)
         with located(scenario, "reference"):
             return law, _reference(scenario.reference, replace(start, tool=tool))
-    controls = []
+    controls, faults = [], Faults()
     waiting = _waiting(scenario) if is_alone else set()
     for index, part in enumerate(scenario.controllers or []):
         if part.name in waiting:
             continue
-        at = ("controllers", index)
-        with located(scenario, *at):
-            joints = None if part.joints is None else joint_group(part.joints, list(model.joint_names))
-            law = part.build_law(model, tool_of(part, tool), folder, runs_code=runs_code)
-        with located(scenario, *at, "load"):
-            check_load(getattr(part, "load", None), neighbours or {})
-        with located(scenario, *at, "reference"):
-            group = None if joints is None else tuple(joints)
-            load: str | None = getattr(part, "load", None)
-            placed = replace(start, tool=tool_of(part, tool), joints=group, load=load)
-            reference = _reference(part.reference, placed)
-        with located(scenario, *at):
-            controls.append(part.build_control(law, reference, joints))
+        with faults.kept():
+            controls.append(_control(scenario, index, start, runs_code=runs_code))
+    faults.check()
     return controls or None, None
+
+
+def _control(scenario: Scenario, index: int, start: Start, *, runs_code: bool) -> Any:
+    """Return an entry of ``controllers`` as an object of the engine; errors are located at its keys."""
+    part, model, at = (scenario.controllers or [])[index], start.model, ("controllers", index)
+    with located(scenario, *at):
+        joints = None if part.joints is None else joint_group(part.joints, list(model.joint_names))
+        tool = tool_of(part, scenario.tool)
+        law = part.build_law(model, tool, scenario.folder, runs_code=runs_code)
+    load: str | None = getattr(part, "load", None)
+    with located(scenario, *at, "load"):
+        check_load(load, start.neighbours)
+    with located(scenario, *at, "reference"):
+        group = None if joints is None else tuple(joints)
+        reference = _reference(part.reference, replace(start, tool=tool, joints=group, load=load))
+    with located(scenario, *at):
+        return part.build_control(law, reference, joints)
 
 
 def _is_moving(reference: Any) -> bool:

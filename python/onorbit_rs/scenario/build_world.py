@@ -23,11 +23,13 @@ from onorbit_rs.scenario.build import (
     build_effects,
     build_environment,
     check_record_every,
+    check_robot,
     controlled,
 )
 from onorbit_rs.scenario.engine import build_world_engine
 from onorbit_rs.scenario.environment.surfaces import build_surfaces
 from onorbit_rs.scenario.events import split_path
+from onorbit_rs.scenario.faults import Faults
 from onorbit_rs.scenario.initial import Neighbour
 from onorbit_rs.scenario.locations import located
 from onorbit_rs.scenario.loops import closed_start
@@ -70,22 +72,16 @@ def build_world(scenario: WorldScenario, *, runs_code: bool = True) -> BuiltWorl
         ``systems``.
     """
     single = scenario.scenarios
-    check_record_every(next(iter(single.values())))
-    models = {name: alone.robot.build(alone) for name, alone in single.items()}
-    build_watches(scenario, models)
-    around = build_environment(scenario, None, runs_code=runs_code)
+    models, around = _parts(scenario, runs_code=runs_code)
     states = _initial_states(scenario, models, around)
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", ".* does not act on bodies")  # the world issues this warning
-        systems = {
-            name: build_around(
-                alone, models[name], states[name],
-                around._replace(effects=build_effects(alone, models[name], runs_code=runs_code)),
-                runs_code=runs_code,
-            )
-            for name, alone in single.items()
-        }  # fmt: skip
-    _check_frames(scenario, models)
+        systems, faults = {}, Faults()
+        for name, alone in single.items():
+            with faults.kept():
+                own = around._replace(effects=build_effects(alone, models[name], runs_code=runs_code))
+                systems[name] = build_around(alone, models[name], states[name], own, runs_code=runs_code)
+        faults.check()
 
     def simulation() -> _core.Simulation:
         others = {name: Neighbour(built.model, built.q, built.v) for name, built in systems.items()}
@@ -118,37 +114,75 @@ def build_world(scenario: WorldScenario, *, runs_code: bool = True) -> BuiltWorl
     return BuiltWorld(scenario, systems, around.orbit, around.earth, world, messages)
 
 
+def _parts(scenario: WorldScenario, *, runs_code: bool) -> tuple[dict[str, _core.Model], Environment]:
+    """Return the robots, orbit, Earth and effects; the errors of all systems are raised together."""
+    models: dict[str, _core.Model] = {}
+    single, faults = scenario.scenarios, Faults()
+    with faults.kept():
+        check_record_every(next(iter(single.values())))
+    for name, alone in single.items():
+        with faults.kept():
+            models[name] = alone.robot.build(alone)
+            check_robot(alone, models[name])
+    with faults.kept():
+        around = build_environment(scenario, None, runs_code=runs_code)
+    if len(models) == len(single):
+        for check in (build_watches, _check_frames):
+            with faults.kept():
+                check(scenario, models)
+    faults.check()
+    return models, around
+
+
 def _initial_states(
     scenario: WorldScenario, models: dict[str, _core.Model], around: Environment
 ) -> dict[str, tuple[Floats, Floats]]:
     """Return the initial configuration and velocity of every system."""
     states: dict[str, tuple[Floats, Floats]] = {}
+    faults = Faults()
     for name in scenario.order:
-        alone = scenario.scenarios[name]
-        initial, neighbour = alone.initial, None
-        if initial.neighbour is not None:
-            other, frame = initial.neighbour
-            with located(alone, "initial", "frame"):
-                _check_frame(models[other], frame)
-            neighbour = Neighbour(models[other], *states[other])
-        with located(alone, "initial"):
-            q, v = initial.build(models[name], around.orbit, neighbour)
-        q, v = closed_start(alone, models[name], q, v)
-        if (part := scenario.systems[name].orbit) is not None and around.orbit is not None:
-            with located(scenario, "systems", name, "orbit"):
-                q[POSITION], velocity = to_world(around.orbit, part.build(alone.folder), earth=around.earth)
-            v[LINEAR] = matrix_from_quaternion(q[QUATERNION]).T @ velocity
-        states[name] = q, v
+        other = scenario.systems[name].initial.neighbour
+        if other is None or other[0] in states:  # otherwise the error of the other system is raised
+            with faults.kept():
+                states[name] = _initial_state(scenario, name, models, states, around)
+    faults.check()
     return states
+
+
+def _initial_state(
+    scenario: WorldScenario,
+    name: str,
+    models: dict[str, _core.Model],
+    states: dict[str, tuple[Floats, Floats]],
+    around: Environment,
+) -> tuple[Floats, Floats]:
+    """Return the initial configuration and velocity of a system, given the ``states`` of earlier ones."""
+    alone = scenario.scenarios[name]
+    initial, neighbour = alone.initial, None
+    if initial.neighbour is not None:
+        other, frame = initial.neighbour
+        with located(alone, "initial", "frame"):
+            _check_frame(models[other], frame)
+        neighbour = Neighbour(models[other], *states[other])
+    with located(alone, "initial"):
+        q, v = initial.build(models[name], around.orbit, neighbour)
+    q, v = closed_start(alone, models[name], q, v)
+    if (part := scenario.systems[name].orbit) is not None and around.orbit is not None:
+        with located(scenario, "systems", name, "orbit"):
+            q[POSITION], velocity = to_world(around.orbit, part.build(alone.folder), earth=around.earth)
+        v[LINEAR] = matrix_from_quaternion(q[QUATERNION]).T @ velocity
+    return q, v
 
 
 def _check_frames(scenario: WorldScenario, models: dict[str, _core.Model]) -> None:
     """Raise an error if a frame of a capture does not exist."""
+    faults = Faults()
     for index, event in enumerate(scenario.events):
         for side, path in enumerate(event.do.capture or ()):
             system, frame = split_path(path)
-            with located(scenario, "events", index, "do", "capture", side):
+            with faults.kept(), located(scenario, "events", index, "do", "capture", side):
                 _check_frame(models[system], frame)
+    faults.check()
 
 
 def _check_frame(model: _core.Model, frame: str) -> None:

@@ -73,17 +73,20 @@ def load(
 
 def _checked_changes(data: Any, file: Path | None, lines: Lines, changes: Changes | None) -> AnyScenario:
     """Return the validated scenario with the changes."""
-    if not changes or not isinstance(data, dict):
-        return check(data, file, lines)
     before = data
-    data, lines = changed(data, lines, changes)
+    if changes and isinstance(data, dict):
+        data, lines = changed(data, lines, changes)
     try:
         return check(data, file, lines)
     except ScenarioError as error:
-        hint = misspelt(before, str(error.path or ""), changes)
+        hint = misspelt(before, str(error.path or ""), changes) if changes else ""
         if hint and len(error.errors) <= 1 and "did you mean" not in error.message:
             error.message += hint
-        raise
+        if not isinstance(data, dict):
+            raise
+        from onorbit_rs.scenario.robot_errors import with_robot_errors  # imports half of the package
+
+        raise with_robot_errors(error, data, file, lines) from None
 
 
 def check(data: Any, file: Path | None, lines: Lines) -> AnyScenario:

@@ -38,10 +38,17 @@ def located(scenario: Document, *at: str | int) -> Iterator[None]:
     except OnOrbitError as error:
         if getattr(error, "located", False):
             raise
-        where = file_and_line(scenario.file, scenario.line_of(*at))
+        line = scenario.line_of(*at)
+        where = file_and_line(scenario.file, line)
         error.message = f"{where}: {dotted(scenario.location(*at))}: {error.message}"
-        error.located = True  # type: ignore[attr-defined]  # inner blocks are more specific
+        error.located = line or True  # type: ignore[attr-defined]  # inner blocks are more specific
         raise
+
+
+def line_of_error(error: OnOrbitError) -> int:
+    """Return the line of the scenario's file to which an error refers; 0 if it is unknown."""
+    line = getattr(error, "located", None) or (error.line if isinstance(error, ScenarioError) else None)
+    return 0 if line is None or line is True else int(line)
 
 
 @contextmanager

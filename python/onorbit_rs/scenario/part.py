@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, get_args
+from typing import Any, ClassVar, Self, get_args
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    ModelWrapValidatorHandler,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+    model_validator,
+)
 
 from onorbit_rs.common.suggestions import nearest
-from onorbit_rs.scenario.errors import invalid, shortened, unknown_key
+from onorbit_rs.scenario.errors import invalid, shortened
+from onorbit_rs.scenario.unknown_keys import without_unknown_keys
 
 FEW = 8
 """Largest number of known keys that a message lists in addition to the most similar key."""
@@ -26,17 +34,15 @@ class Part(BaseModel):
         """Return the names that the keys of this part have in the YAML file."""
         return [field.alias or name for name, field in cls.model_fields.items()]
 
-    @model_validator(mode="before")
+    @model_validator(mode="wrap")
     @classmethod
-    def _refuse_unknown_keys(cls, value: Any) -> Any:
+    def _refuse_unknown_keys(cls, value: Any, validate: ModelWrapValidatorHandler[Self]) -> Self:
+        known = cls.yaml_keys()
+        unknown = {}
         if isinstance(value, dict):
-            known = cls.yaml_keys()
-            for key in value:
-                if key not in known:
-                    raise unknown_key(
-                        str(key), cls._hint(str(key), [name for name in known if name not in value])
-                    )
-        return value
+            free = [name for name in known if name not in value]
+            unknown = {key: cls._hint(str(key), free) for key in value if key not in known}
+        return without_unknown_keys(value, unknown, validate)
 
     @classmethod
     def _hint(cls, key: str, free: list[str]) -> str:
@@ -51,7 +57,7 @@ class Part(BaseModel):
         return f"{hint}{' ' if hint else '; '}known keys: {', '.join(known)}"
 
 
-def of_kind(union: Any) -> BeforeValidator:
+def of_kind(union: Any) -> WrapValidator:
     """Return the validator of a union of parts that have a ``kind``; error messages list the kinds.
 
     A single word is a kind: ``gravity_gradient`` is equivalent to ``{kind: gravity_gradient}``.
@@ -60,21 +66,22 @@ def of_kind(union: Any) -> BeforeValidator:
     keys = {kind: part.yaml_keys() for kind, part in parts.items()}
     kinds = ", ".join(keys)
 
-    def read(value: Any) -> Any:
+    def read(value: Any, validate: ValidatorFunctionWrapHandler) -> Any:
         value = {"kind": value} if isinstance(value, str) else value
         if isinstance(value, Part):
-            return value
+            return validate(value)
         if not isinstance(value, dict):
             raise invalid(f"must be a mapping with a 'kind' ({kinds}), not {shortened(value)}")
         if "kind" not in value:
             raise invalid(f"has no 'kind'; give one of {kinds}")
         own = keys.get(str(value["kind"]), [*value])  # an unknown kind accepts any key
+        unknown = {}
         for key in value:
             others = [kind for kind, names in keys.items() if key in names]
             if key not in own and others:  # true only for a known kind
                 meant = parts[str(value["kind"])].synonyms.get(str(key))
                 hint = f"; did you mean {meant!r}?" if meant else f"; it is a key of {', '.join(others)}"
-                raise unknown_key(key, f" for kind '{value['kind']}'{hint}")
-        return value
+                unknown[key] = f" for kind '{value['kind']}'{hint}"
+        return without_unknown_keys(value, unknown, validate)
 
-    return BeforeValidator(read)
+    return WrapValidator(read)

@@ -17,6 +17,7 @@ from pydantic import (
 from onorbit_rs import _core, robots
 from onorbit_rs.robots.wording import Wording, worded
 from onorbit_rs.scenario.errors import invalid, shortened
+from onorbit_rs.scenario.faults import Faults
 from onorbit_rs.scenario.fields import FilePath, Inertia, Length3, Mass, Positive
 from onorbit_rs.scenario.joint_properties import JointProperties
 from onorbit_rs.scenario.locations import dotted, located, located_warnings
@@ -214,14 +215,15 @@ class Robot(PlainRobot):
         OnOrbitError
             A subclass for the kind of error; its message starts with file, line and key.
         """
-        model = self._build_tree(scenario)
+        model, faults = self._build_tree(scenario), Faults()
         for name, properties in self.joints.items():
-            with located(scenario, "robot", "joints", name):
+            with faults.kept(), located(scenario, "robot", "joints", name):
                 model = properties.apply(model, name)
         for index, extra in enumerate(scenario.collision):
             at = ("collision", index)
-            with located(scenario, *at), located_warnings(scenario, *at):
+            with faults.kept(), located(scenario, *at), located_warnings(scenario, *at):
                 model = extra.add_to(model, scenario.folder)
+        faults.check()
         return add_loops(scenario, model)
 
     def _build_tree(self, scenario: Scenario) -> _core.Model:

@@ -5,16 +5,16 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from onorbit_rs.common.counting import count
 from onorbit_rs.common.suggestions import did_you_mean, nearest
-from onorbit_rs.exceptions import ScenarioError
+from onorbit_rs.exceptions import OnOrbitError, ScenarioError
 from onorbit_rs.scenario.errors import shortened
-from onorbit_rs.scenario.locations import dotted, scenario_error
+from onorbit_rs.scenario.locations import dotted, line_of_error, scenario_error
 from onorbit_rs.scenario.yaml_lines import Lines, Location, line_of
 
 MOST_ERRORS = 20
@@ -38,24 +38,24 @@ def first_error(
         at = location(*at)
         found.append((line_of(at, lines) or lines.get((), 0), at, message))
     found.sort(key=lambda entry: entry[0])
-    return combined([scenario_error(text, file, line or None, dotted(at)) for line, at, text in found])
+    errors = [scenario_error(text, file, line or None, dotted(at)) for line, at, text in found]
+    return cast("ScenarioError", combined(errors))
 
 
-def combined(errors: Sequence[ScenarioError]) -> ScenarioError:
+def combined(errors: Sequence[OnOrbitError]) -> OnOrbitError:
     """Return several errors of a scenario as one error with a line for each, and the attributes of the first.
 
-    A single error is returned unchanged.
+    The errors are in the order of the file. A single error is returned unchanged.
     """
-    all_of_them = [own for error in errors for own in (error.errors or (error,))]
-    if len(all_of_them) == 1:
-        return all_of_them[0]
-    lines = [str(error) for error in all_of_them[:MOST_ERRORS]]
-    if len(all_of_them) > MOST_ERRORS:
-        lines.append(f"and {len(all_of_them) - MOST_ERRORS} more")
-    first = all_of_them[0]
-    return ScenarioError(
-        "\n".join(lines), file=first.file, path=first.path, line=first.line, errors=tuple(all_of_them)
-    )
+    given = [own for error in errors for own in (getattr(error, "errors", None) or (error,))]
+    found = sorted({str(error): error for error in given}.values(), key=line_of_error)
+    if len(found) == 1:
+        return found[0]
+    lines = [str(error) for error in found[:MOST_ERRORS]]
+    if len(found) > MOST_ERRORS:
+        lines.append(f"and {len(found) - MOST_ERRORS} more")
+    file, path, line = (getattr(found[0], name, None) for name in ("file", "path", "line"))
+    return ScenarioError("\n".join(lines), file=file, path=path, line=line, errors=tuple(found))
 
 
 def _location_and_message(details: ErrorDetails, data: Any) -> tuple[Location, str]:

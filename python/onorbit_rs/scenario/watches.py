@@ -14,6 +14,7 @@ from onorbit_rs.clearance.watches import KeepOut, MinimumDistance, Watch
 from onorbit_rs.exceptions import InputError
 from onorbit_rs.scenario.errors import inconsistent, invalid, shortened
 from onorbit_rs.scenario.events import ItsName
+from onorbit_rs.scenario.faults import Faults
 from onorbit_rs.scenario.locations import located
 from onorbit_rs.scenario.part import Part
 from onorbit_rs.scenario.pose import Pose
@@ -99,12 +100,13 @@ def build_watches(scenario: Document, models: Mapping[str, _core.Model]) -> list
         For unknown links or frames, a distance without a pair of links to compare, and a zone in ``lvlh``
         without an orbit; the message contains the location of the entry.
     """
-    found = []
+    found, faults = [], Faults()
     for at, part in _parts(scenario):
-        with located(scenario, *at):
+        with faults.kept(), located(scenario, *at):
             found.append(part.build(scenario.folder))
             prepare(models, found[-1])
             if getattr(part, "fixed_to", "") == "lvlh" and scenario.orbit is None:
                 message = "lvlh requires an orbit; add 'orbit', or use fixed_to: world"
                 raise InputError(message, name="fixed_to", got="lvlh")
+    faults.check()
     return found

@@ -19,7 +19,6 @@ from onorbit_rs.scenario.environment.paths import split_link
 from onorbit_rs.scenario.environment.surface_effects import SurfaceEffect
 from onorbit_rs.scenario.errors import inconsistent
 from onorbit_rs.scenario.events import Event, ItsName, check_events
-from onorbit_rs.scenario.locations import scenario_error
 from onorbit_rs.scenario.loops import Loop, check_loops
 from onorbit_rs.scenario.materials import MaterialPair, check_materials, look_up
 from onorbit_rs.scenario.orbit import StartOrbit
@@ -67,13 +66,11 @@ class WorldScenario(Document):
     def _hint(cls, key: str, free: list[str]) -> str:
         if key in ControlSettings.model_fields:
             return "; it belongs in each entry of 'systems'"
+        if key in RobotKeys.model_fields:
+            return "; it belongs to a single robot: give either 'systems' or the keys of one robot"
         return super()._hint(key, free)
 
     def _validate(self, data: dict[str, Any], file: Path | None, lines: Lines) -> None:
-        for key in RobotKeys.model_fields:
-            if key in data:
-                message = f"{key!r} belongs to a single robot; give either 'systems' or the keys of one robot"
-                raise scenario_error(message, file, lines.get((key,)), key)
         super()._validate(data, file, lines)
         for name, scenario in self.scenarios.items():
             self.systems[name].reference = scenario.reference  # with the default

@@ -8,6 +8,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
+from onorbit_rs.common.counting import count
 from onorbit_rs.common.files import output_errors
 from onorbit_rs.exceptions import OnOrbitError
 from onorbit_rs.simulation.command_format import SETPOINT, Command, as_line, checked, invalid
@@ -108,6 +109,11 @@ class CommandLog:
         if self._path is not None:
             with output_errors(self._path):
                 self._stream = self._path.open("w", encoding="utf-8")
+
+    def __repr__(self) -> str:
+        """Return a line with the number of commands and the file."""
+        where = "" if self._path is None else f", in {self._path}"
+        return f"<CommandLog: {count(len(self.entries), 'command', 'commands')}{where}>"
 
     def apply(self, stepper: Stepper, *entries: Mapping[str, Any]) -> None:
         """Give a stepper a command, and add it to the log with the current time of the stepper.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import reprlib
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +24,11 @@ class Controller(ABC):
     ...     def update(self, t, state):
     ...         return -0.5 * state.v[6:]
     """
+
+    def __repr__(self) -> str:
+        """Return the class and the attributes, shortened."""
+        values = ", ".join(f"{name}={reprlib.repr(value)}" for name, value in vars(self).items())
+        return f"{type(self).__name__}({values})" if len(values) < 200 else f"{type(self).__name__}(…)"
 
     def reset(self) -> None:  # noqa: B027  # most controllers have no state
         """Clear the state of a previous run; called at the start of every run."""
