@@ -71,7 +71,7 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
         ("did you mean 'angular_velocity'?",),
     ),
     "a key that already exists": (
-        LAW + "initial: {joint_rates: [1], joint_rate: [1]}\n",
+        LAW + "initial: {joint_rates: [0, 0, 0, 0, 0, 0, 0], joint_rate: [1]}\n",
         "5: initial.joint_rate",
         ("did you mean 'joints'?", "known keys: frame"),
     ),

@@ -181,12 +181,13 @@ class Change(Part):
                 "must be a mapping with 'set', 'add' or 'scale', such as {add: {normal: [0, 0.1]}}, not "
                 f"{shortened(value)}"
             )
-        for name in ("uniform", "normal", "choice"):
-            if isinstance(value, dict) and name in value:
-                raise invalid(
-                    f"'{name}' belongs in 'set', 'add' or 'scale', such as {{add: {{{name}: [...]}}}}"
-                )
         return value
+
+    @classmethod
+    def _hint(cls, key: str, free: list[str]) -> str:
+        if key in ("uniform", "normal", "choice"):
+            return f"; it belongs in 'set', 'add' or 'scale', such as {{add: {{{key}: [...]}}}}"
+        return super()._hint(key, free)
 
     @model_validator(mode="after")
     def _is_one(self) -> Self:
