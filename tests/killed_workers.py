@@ -128,8 +128,9 @@ def killing(workers: Callable[[], list[psutil.Process]], most: int) -> Iterator[
         while len(killed) < most and not is_over.wait(0.3 + chance.expovariate(1.0)):
             with suppress(psutil.Error, IndexError):  # it has just ended, or none has started
                 victim = chance.choice(workers())
-                victim.kill()
-                killed.append(victim.pid)
+                if victim.status() != psutil.STATUS_ZOMBIE:
+                    victim.kill()
+                    killed.append(victim.pid)
 
     thread = threading.Thread(target=kill)
     thread.start()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -14,10 +15,10 @@ from test_campaign_processes import with_law
 import onorbit_rs as oo
 from onorbit_rs.campaigns import cases, failures
 from onorbit_rs.campaigns.cases import Outcome
+from onorbit_rs.campaigns.failure_folders import failure_folder
 from onorbit_rs.campaigns.plan import Plan
-from onorbit_rs.campaigns.storage import unfinished_failure
-from onorbit_rs.exceptions import OutputFolderError, OutputNotEmptyError
-from onorbit_rs.simulation import finish
+from onorbit_rs.exceptions import OutputFolderError, OutputNotEmptyError, ReadError
+from onorbit_rs.simulation import finish, memory
 
 pytestmark = pytest.mark.usefixtures("no_campaign_report")
 
@@ -30,15 +31,15 @@ def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
 
     @contextmanager
     def one_by_one(plan: Plan, numbers: Sequence[int], workers: int, keep_in: Path) -> Iterator[Any]:
-        yield (cases.keep_case(plan, case, unfinished_failure(keep_in, case)) for case in numbers)
+        yield (cases.keep_case(plan, case, failure_folder(keep_in, case)) for case in numbers)
 
     monkeypatch.setattr(failures, "on_processes", one_by_one)
     monkeypatch.setattr(finish, "write_pictures", lambda *_, **__: None)
 
 
-def all_fail(number: int = 3) -> dict[str, Any]:
-    """Returns a campaign whose cases are complete and meet no condition of success."""
-    return spin(number, success={"base_rotation_max_rad": {"below": 0.0}}, keep=FULL)
+def all_fail(number: int = 3, below: float = 0.0) -> dict[str, Any]:
+    """Returns a campaign whose cases are complete and, by default, meet no condition of success."""
+    return spin(number, success={"base_rotation_max_rad": {"below": below}}, keep=FULL)
 
 
 def raising(folder: Path, after: float) -> dict[str, Any]:
@@ -128,7 +129,8 @@ def test_a_full_disk_is_an_error_and_the_next_call_writes_the_rest(
         with pytest.raises(OutputFolderError, match=r"No space left .* 3 of 3 cases are kept .* continues"):
             oo.campaign(all_fail(), tmp_path)
     assert (tmp_path / "cases.parquet").exists()
-    assert kept(tmp_path) == [".partial-case_1", "case_0"]
+    assert kept(tmp_path) == ["case_0", "case_1"]
+    assert not (tmp_path / "failures" / "case_1" / "reason.txt").exists(), "this folder is not complete"
     oo.campaign(all_fail(), tmp_path)
     assert kept(tmp_path) == ["case_0", "case_1", "case_2"]
     assert all((tmp_path / "failures" / name / "trace.npz").exists() for name in kept(tmp_path))
@@ -173,3 +175,78 @@ def test_another_campaign_replaces_the_failures_but_no_file_of_the_user(tmp_path
     assert same(table).equals(same(oo.campaign(other)))
     assert kept(tmp_path) == ["case_1"]
     assert [file.name for file in mine.parent.iterdir()] == ["notes.txt"]
+    oo.campaign(all_fail(), tmp_path, force=True)  # the case of this folder fails again
+    assert kept(tmp_path) == ["case_0", "case_1", "case_2"]
+    assert {"notes.txt", "reason.txt", "trace.npz"} < {file.name for file in mine.parent.iterdir()}
+
+
+@pytest.mark.usefixtures("in_this_process")
+def test_a_campaign_that_cannot_be_replaced_remains(tmp_path: Path) -> None:
+    table = oo.campaign(all_fail(), tmp_path)
+    manifest = tmp_path / "failures" / "case_1" / "manifest.json"
+    before = manifest.read_bytes()
+    manifest.write_text("{}")
+    other = spin(2)
+    other["campaign"]["seed"] = 2
+    with pytest.raises(ReadError, match=r"manifest\.json"):
+        oo.campaign(other, tmp_path, force=True)
+    manifest.write_bytes(before)
+    assert same(oo.campaign(all_fail(), tmp_path)).equals(same(table))
+    assert kept(tmp_path) == ["case_0", "case_1", "case_2"]
+
+
+@pytest.mark.usefixtures("in_this_process")
+def test_links_among_the_failures_are_not_followed(tmp_path: Path) -> None:
+    out, aside = tmp_path / "out", tmp_path / "aside"
+    oo.campaign(all_fail(2), out)
+    (out / "failures" / "case_1").rename(aside)
+    (out / "failures" / "case_1").symlink_to(aside)
+    files = sorted(file.name for file in aside.iterdir())
+    other = spin(2)
+    other["campaign"]["seed"] = 2
+    oo.campaign(other, out, force=True)
+    assert sorted(file.name for file in aside.iterdir()) == files
+
+
+@pytest.mark.usefixtures("in_this_process")
+def test_other_conditions_of_success_change_the_failures(tmp_path: Path) -> None:
+    rotation = oo.campaign(all_fail(), tmp_path)["base_rotation_max_rad"].to_pylist()
+    wanted = all_fail(below=max(rotation))
+    oo.campaign(wanted, tmp_path)
+    worst = f"case_{rotation.index(max(rotation))}"
+    assert kept(tmp_path) == [worst], "the others are now successes"
+    (tmp_path / "failures" / worst / "reason.txt").write_text("something else\nrun again: E: x\n")
+    oo.campaign(wanted, tmp_path)
+    text = (tmp_path / "failures" / worst / "reason.txt").read_text()
+    assert text == f"base_rotation_max_rad is {max(rotation):.6g}\nrun again: E: x\n"
+
+
+@pytest.mark.usefixtures("in_this_process")
+def test_too_little_space_for_the_rows_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with monkeypatch.context() as patched:
+        patched.setattr(memory, "FITTING", 1.0)
+        patched.setattr(memory.shutil, "disk_usage", lambda _: SimpleNamespace(free=10.0))
+        with pytest.raises(OutputFolderError, match="delete files to make room"):
+            oo.campaign(all_fail(1), tmp_path)
+    oo.campaign(all_fail(1), tmp_path)
+    assert (tmp_path / "failures" / "case_0" / "trace.npz").exists()
+
+
+def test_the_working_directory_of_a_law_does_not_move_the_results(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "moving.py").write_text(
+        "import os\nimport numpy as np\n"
+        "class Law:\n"
+        f"    def __init__(self): os.chdir({str(tmp_path / 'elsewhere')!r})\n"
+        "    def update(self, t, state): return np.zeros(len(state.joints))\n"
+    )
+    scenario = with_law(tmp_path)
+    scenario["controller"] = {"kind": "python", "file": str(tmp_path / "moving.py"), "class": "Law"}
+    vary = {"initial.angular_velocity": {"add": {"normal": [0.0, 0.1]}}}
+    success = {"base_rotation_max_rad": {"below": 0.0}}
+    monkeypatch.chdir(tmp_path)
+    oo.campaign(campaign_of(scenario, vary, 1, keep=FULL, success=success), "out", workers=1)
+    assert (tmp_path / "out" / "failures" / "case_0" / "trace.npz").exists()
+    assert not list((tmp_path / "elsewhere").iterdir())

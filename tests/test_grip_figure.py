@@ -27,6 +27,8 @@ def test_the_command_increases_while_all_fingers_touch() -> None:
     np.testing.assert_array_equal(commanded_force(Grip(10.0, 4.0), time, np.full(8, 1.0)), np.full(8, 10.0))
     at_once = commanded_force(Grip(10.0, 0.0, (("left",),), pressures), time, np.full(8, 1.0))
     np.testing.assert_array_equal(at_once[1:5], [10.0] * 4)
+    late = np.array([np.nan, np.nan, np.nan, 2.0, 2.0, np.nan, 2.0, 2.0])  # not active in the first rows
+    np.testing.assert_array_equal(commanded_force(grip, time, late)[2:5], [np.nan, 2.0, 4.5])
 
 
 def test_the_force_of_a_run_follows_the_command() -> None:
@@ -53,6 +55,8 @@ def test_the_contacts_of_the_fingers_of_a_scenario() -> None:
     (grip,) = [one for one in scenario.scenarios["servicer"].laws if isinstance(one, GripForceController)]
     assert finger_contacts(grip, "servicer", model, scenario.contacts) == (("left_pad",), ("right_pad",))
     assert finger_contacts(grip, "servicer", model, scenario.contacts[:1]) == ()
+    both = scenario.contacts[0].model_copy(update={"between": [["servicer/*_finger"], ["target/*"]]})
+    assert finger_contacts(grip, "servicer", model, [both]) == ()
 
 
 def test_the_figures_of_a_run_know_the_fingers() -> None:

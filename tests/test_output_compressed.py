@@ -17,7 +17,7 @@ from typer.testing import CliRunner
 
 import onorbit_rs as oo
 from onorbit_rs.cli.app import app
-from onorbit_rs.exceptions import InputError, ReadError, RunInterrupted
+from onorbit_rs.exceptions import OutputFolderError, ReadError, RunInterrupted
 from onorbit_rs.output import npz_reader
 from onorbit_rs.output.npz import write_arrays
 from onorbit_rs.output.npz_reader import read_arrays
@@ -168,11 +168,11 @@ def test_the_estimate_states_what_compression_saves(tmp_path: Path, monkeypatch:
     memory.check_size(built, tmp_path, compress=True)  # without a warning, which would be an error
     free = 1.8 * size
     monkeypatch.setattr(memory.shutil, "disk_usage", lambda path: SimpleNamespace(free=free))
-    with pytest.raises(InputError, match=r"room, use --compress \(compress=True\), or set"):
+    with pytest.raises(OutputFolderError, match=r"room, use --compress \(compress=True\), or set"):
         memory.check_size(built, tmp_path)
     memory.check_size(built, tmp_path, compress=True)
     free = 1.5 * size
-    with pytest.raises(InputError, match=r"room, or set simulation.record_every"):
+    with pytest.raises(OutputFolderError, match=r"room, or set simulation.record_every"):
         memory.check_size(built, tmp_path, compress=True)
 
 

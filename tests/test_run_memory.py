@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import onorbit_rs as oo
-from onorbit_rs.exceptions import InputError
+from onorbit_rs.exceptions import InputError, OutputFolderError
 from onorbit_rs.output.pickling import arrays_of
 from onorbit_rs.output.world import world_arrays
 from onorbit_rs.scenario import WorldScenario, load
@@ -67,7 +67,7 @@ def test_a_full_disk_is_noticed_before_the_run(tmp_path: Path, monkeypatch: pyte
     usage = type("Usage", (), {"free": 1e9})
     monkeypatch.setattr(memory.shutil, "disk_usage", lambda path: usage)
     with pytest.raises(
-        InputError,
+        OutputFolderError,
         match=r"where 1 GB is available; delete files to make room, or set simulation.record_every to",
     ):
         memory.check_size(built("free_tumble", LONG), tmp_path)

@@ -169,3 +169,46 @@ def test_no_python_code_runs_to_find_errors(tmp_path: Path) -> None:
     text = SINGLE[: SINGLE.index("controllers:")] + law + "simulation: {duration: -1}\n"
     found = errors_of(tmp_path, text, ("tool: tool", "tool: toool"))
     assert starts(found) == ["2: tool", "8: simulation.duration"]
+
+
+def test_an_unknown_key_does_not_hide_a_wrong_type_of_a_path(tmp_path: Path) -> None:
+    """Regression: pydantic does not know the type of this error by its name."""
+    found = errors_of(tmp_path, SINGLE, ("robot: humanoid_torso", "robot: {urdf: 3, foo: 1}"))
+    assert starts(found) == ["1: robot.foo", "1: robot.urdf"]
+
+
+def test_keys_of_another_kind_do_not_hide_keys_of_no_kind(tmp_path: Path) -> None:
+    found = errors_of(tmp_path, SINGLE, ("7000 km", "7000 km, line1: 1, foo: 2"))
+    assert starts(found) == ["3: orbit.line1", "3: orbit.foo"]
+    assert "it is a key of sgp4" in found[0] and "known keys" in found[1]
+
+
+def test_other_errors_do_not_cause_errors_of_references(tmp_path: Path) -> None:
+    """Regression: the reference was built at another position than that of the joints."""
+    homing = "reference: {kind: joint_waypoints, points: [{arm_joint_1: 0.0}], speed: 0.1, acceleration: 0.1}"
+    law = "[arm_joint_1], p: 1, d: 1, "
+    home = (law + "reference: {kind: joint_hold}", law + homing)
+    (tmp_path / "valid.yaml").write_text(SINGLE.replace(*home))
+    oo.run(tmp_path / "valid.yaml", quiet=True, changes={"simulation.duration": "2 ms"})
+    (only,) = errors_of(tmp_path, SINGLE, home, ("time_step: 1 ms", "time_step: 1 ms, record_every: 2000"))
+    assert starts([only]) == ["11: simulation.record_every"]
+
+
+def test_several_errors_have_the_location_of_the_first(tmp_path: Path) -> None:
+    file = tmp_path / "wrong.yaml"
+    file.write_text(SINGLE.replace("tool: tool", "tool: toool").replace("0.1}", "0.1, nowhere: 1}"))
+    with pytest.raises(ScenarioError) as caught:
+        oo.run(file, quiet=True)
+    error = caught.value
+    assert (error.file, error.path, error.line) == (str(file), "tool", 2)
+    file.write_text(SINGLE.replace("humanoid_torso", "nowhere.urdf").replace("duration: 1,", "duration: -1,"))
+    with pytest.raises(ScenarioError) as caught:
+        oo.scenario.load(file)
+    assert (caught.value.file, caught.value.path, caught.value.line) == (str(file), "robot", 1)
+
+
+def test_the_unknown_tool_of_a_control_is_located_there(tmp_path: Path) -> None:
+    text = SINGLE.replace("tool: tool\n", "")
+    hand = "{kind: computed_torque, name: hand, tool: toool, kp: 1, kd: 1, reference: {kind: hold}}"
+    (only,) = errors_of(tmp_path, text, ("initial:", f"  - {hand}\ninitial:"))
+    assert starts([only]) == ["9: controllers[2].tool"]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs._core import WorldTrace
+from onorbit_rs.campaigns.failure_folders import begin_failure
 from onorbit_rs.campaigns.kept_columns import kept_columns
 from onorbit_rs.campaigns.numbers import numbers_of
 from onorbit_rs.common.files import exists
@@ -85,24 +86,31 @@ def run_case(plan: Plan, case: int, check_stop: Callable[[], None] = lambda: Non
 
 
 def keep_case(plan: Plan, case: int, folder: Path) -> Outcome:
-    """Run a case in ``folder`` as an ordinary run, and return its outcome without numbers.
+    """Run a case in ``folder`` as an ordinary run; return its outcome, of which only the error is filled in.
 
     Raises
     ------
     OutputFolderError
         If the results cannot be written, as on a full disk.
     """
-    data, values = plan.case(case)
+    begin_failure(folder)
+    error, text = _error_of_run(plan.case(case).scenario, folder), None
+    if error is not None:
+        text, trace = _text(error), getattr(error, "trace", None)
+        if trace is not None and len(trace) and not exists(folder / SUMMARY):
+            raise OutputFolderError(f"cannot write {folder}: {text}", path=str(folder)) from error
+    return Outcome(case, "complete" if error is None else "failed", text, {}, {})
+
+
+def _error_of_run(data: dict[str, Any], folder: Path) -> Exception | None:
+    """Run a scenario in a folder, whose results are replaced; return the error with which it ends."""
     try:
         run(check(data, None, {}), folder, force=True, quiet=True)
     except OutputFolderError:
         raise
     except Exception as error:
-        text, trace = _text(error), getattr(error, "trace", None)
-        if trace is not None and len(trace) and not exists(folder / SUMMARY):
-            raise OutputFolderError(f"cannot write {folder}: {text}", path=str(folder)) from error
-        return Outcome(case, "failed", text, values, {})
-    return Outcome(case, "complete", None, values, {})
+        return error
+    return None
 
 
 class Stopped(Exception):

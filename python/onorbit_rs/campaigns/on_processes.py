@@ -107,7 +107,7 @@ def on_processes(
 
     A worker that dies is replaced, and its unfinished cases are run again. A case during which
     ``MOST_DEATHS`` workers died counts as failed. With ``keep_in``, the folder of the campaign, each case is
-    an ordinary run, and its folder has no final name yet.
+    run as an ordinary run in its folder among the failures, and errors of writing are raised.
     """
     greeting = packed((plan, sys.path, keep_in))
     with pooled(cases, workers, lambda: _InProcess(greeting)) as outcomes:

@@ -131,12 +131,11 @@ class Places:
 
     def known(self, path: str) -> list[str]:
         """Return the names of all entries at the deepest level to which the path leads."""
-        steps = self._steps(path)
-        parents, _ = self._deepest(steps)
-        names = (
-            f"{place.name}.{key}".removeprefix(".") for place in parents for key in self._children(place)
-        )
-        return list(names)
+        return [
+            f"{place.name}[{key}]" if key.isdecimal() else f"{place.name}.{key}".removeprefix(".")
+            for place in self._deepest(self._steps(path))[0]
+            for key in self._children(place)
+        ]
 
     def nearest(self, path: str) -> str | None:
         """Return the path to which a misspelt path probably refers, or None."""

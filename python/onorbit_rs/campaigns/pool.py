@@ -34,6 +34,8 @@ class Executor(Protocol):
         ------
         WorkerDied
             If the process that ran the cases ended.
+        OutputFolderError
+            If the results of a case cannot be written.
         """
 
     def stop(self) -> None:

@@ -59,8 +59,8 @@ def campaign(
     cases : int, optional
         Number of cases; replaces the number in the campaign.
     workers : int, optional
-        Number of threads, or of processes if Python code runs in every step or the cluster is ``local``.
-        Default: the number of cores of the machine.
+        Number of threads, or of processes if Python code runs in every step or the cluster is ``local``. At
+        most half as many processes keep the failures in full. Default: the number of cores of the machine.
     cluster : str, optional
         Address of the scheduler of a Dask cluster, such as ``tcp://10.0.0.1:8786``, or ``local`` for a
         cluster on this machine. A script that starts one needs ``if __name__ == "__main__":``.
@@ -85,8 +85,8 @@ def campaign(
         required, is not installed (``InputError``). Errors of single cases are not raised; they are in the
         column ``error``.
     CampaignError
-        If the cluster does not answer or cannot run the cases, or the connection to it is lost. The cases on
-        the disk are kept.
+        If the cluster does not answer or cannot run the cases, the connection to it is lost, or the worker
+        processes do not start. The cases on the disk are kept.
     OutputFolderError
         If the disk is full; the cases on the disk are kept, and the same call continues the campaign.
     """

@@ -18,34 +18,17 @@ from typing import Any
 import numpy as np
 
 from onorbit_rs.campaigns.cases import Outcome
-from onorbit_rs.common.files import (
-    exists,
-    file_kind,
-    is_real_folder,
-    is_regular,
-    output_errors,
-    remove,
-    replacing,
-)
-from onorbit_rs.exceptions import (
-    OutputFolderError,
-    OutputInUseError,
-    OutputNotEmptyError,
-    OutputNotWritableError,
-    ReadError,
-)
-from onorbit_rs.output import OutputFolder
+from onorbit_rs.campaigns.failure_folders import failure_folders, remove_failure
+from onorbit_rs.common.files import is_regular, output_errors, remove, replacing
+from onorbit_rs.exceptions import OutputInUseError, OutputNotEmptyError, ReadError
 from onorbit_rs.output.errors import not_writable
+from onorbit_rs.output.folder import make_folder
 from onorbit_rs.output.lock import LOCK, FolderLock, owner_of
-from onorbit_rs.output.manifest import FIGURES, MANIFEST, SCENARIO
 
 CAMPAIGN, TABLE, COLUMNS, REPORT = "campaign.yaml", "cases.parquet", "columns.parquet", "report.html"
-PARTS, FAILURES, IDENTITY = "cases", "failures", "identity.json"
-REASON = "reason.txt"
-"""File with the reason why a case is not a success, in the folder of its results."""
+PARTS, IDENTITY = "cases", "identity.json"
 _PART = re.compile(r"part-(\d{8})\.json")
 _OWN = re.compile(rf"(part|columns)-\d{{8}}\.(json|npz)|{re.escape(IDENTITY)}|\.partial-[0-9a-f]+")
-_FAILURE = re.compile(r"(\.partial-)?case_\d+")
 _EVERY_S = 1.0
 """Wall-clock time between two parts, s; a process that is killed loses the outcomes since the last part."""
 _MOST_ROWS = 500
@@ -69,7 +52,7 @@ class CampaignFolder:
         self.path, self._digest = Path(path), digest
         self._buffer: list[Outcome] = []
         self._last_write = time.monotonic()
-        _make(self.path)
+        make_folder(self.path)
         if owner_of(self.path) is None and not is_campaign(self.path) and not _is_empty(self.path):
             raise OutputNotEmptyError(
                 f"the output folder {self.path} contains files, but no campaign; choose another folder",
@@ -110,15 +93,15 @@ class CampaignFolder:
         self.write(f"{PARTS}/{IDENTITY}", json.dumps({"name": name, "digest": self._digest}).encode())
 
     def _remove_campaign(self) -> None:
+        """Remove the campaign; its identity is removed last, so that it remains one if this fails."""
+        for folder in failure_folders(self.path).values():
+            remove_failure(folder)
         with output_errors(self.path):
             for name in (TABLE, COLUMNS, REPORT, CAMPAIGN):
                 remove(self.path / name)
-            for file in sorted((self.path / PARTS).iterdir()):
+            for file in sorted((self.path / PARTS).iterdir(), key=lambda file: file.name == IDENTITY):
                 if _OWN.fullmatch(file.name):
                     remove(file)
-        for failed in (self.path / FAILURES).glob("*case_*"):
-            if _FAILURE.fullmatch(failed.name):
-                _remove_failure(failed)
 
     def __enter__(self) -> CampaignFolder:
         """Return the folder."""
@@ -237,16 +220,6 @@ class CampaignFolder:
         return rows
 
 
-def failure(folder: Path, case: int) -> Path:
-    """Return the folder for the results of a case without success."""
-    return folder / FAILURES / f"case_{case}"
-
-
-def unfinished_failure(folder: Path, case: int) -> Path:
-    """Return the folder of the results of a case without success until they are complete."""
-    return folder / FAILURES / f".partial-case_{case}"
-
-
 def is_campaign(folder: Path) -> bool:
     """Return True if a folder contains a campaign."""
     return is_regular(folder / PARTS / IDENTITY)
@@ -258,38 +231,6 @@ def _identity(folder: Path) -> dict[str, Any]:
     except (OSError, ValueError):
         return {}
     return found if isinstance(found, dict) else {}
-
-
-def _make(folder: Path) -> None:
-    try:
-        if exists(folder) and not folder.is_dir():
-            raise OutputNotWritableError(
-                f"the output path {folder} is {file_kind(folder)}, but must be a folder; choose another path",
-                path=str(folder),
-            )
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        if isinstance(error, OutputFolderError):
-            raise
-        raise not_writable(folder, error) from error
-
-
-def _remove_failure(folder: Path) -> None:
-    """Remove the results of a case; the folder remains if it contains other files.
-
-    Raises
-    ------
-    OutputFolderError
-        If the results contain a figure that was edited, or another process uses the folder.
-    """
-    if not exists(folder / MANIFEST):  # the run did not begin
-        remove(folder / SCENARIO)
-    with OutputFolder.claim(folder, force=True):
-        remove(folder / REASON)
-    remove(folder / LOCK)
-    for empty in (folder / FIGURES, folder):
-        if is_real_folder(empty) and not any(empty.iterdir()):
-            empty.rmdir()
 
 
 def _is_empty(folder: Path) -> bool:

@@ -16,7 +16,7 @@ import warnings
 from typing import TYPE_CHECKING, BinaryIO
 
 from onorbit_rs.campaigns.cases import keep_case, run_case
-from onorbit_rs.campaigns.storage import unfinished_failure
+from onorbit_rs.campaigns.failure_folders import failure_folder
 from onorbit_rs.common.processes import receive, send
 from onorbit_rs.exceptions import OutputFolderError
 
@@ -44,7 +44,7 @@ def main() -> None:
 
 def _kept(plan: Plan, case: int, folder: Path) -> Outcome | OutputFolderError:
     try:
-        return keep_case(plan, case, unfinished_failure(folder, case))
+        return keep_case(plan, case, failure_folder(folder, case))
     except OutputFolderError as error:
         return error
 

@@ -42,10 +42,10 @@ class Grip:
 
 
 def commanded_force(grip: Grip, time: Floats, actual: Floats) -> Floats:
-    """Return the commanded force, (T,), N, while all fingers touch; NaN while one of them does not.
+    """Return the commanded force, (T,), N, while the control is active and all fingers touch; otherwise NaN.
 
-    It increases from the force of the row in which all fingers touch for the first time, as in the control
-    law, which knows the instant between two rows.
+    It increases from the force of the first row in which this holds, as in the control law, which knows the
+    instant between two rows.
 
     Parameters
     ----------
@@ -54,13 +54,13 @@ def commanded_force(grip: Grip, time: Floats, actual: Floats) -> Floats:
     time : (T,) array
         Times, s.
     actual : (T,) array
-        Mean normal forces of the fingers, N.
+        Mean normal forces of the fingers, N; NaN while the control is not active.
     """
     pressures = grip.pressures or {}
     touching = [np.any([pressures[name] > 0.0 for name in names], axis=0) for names in grip.fingers]
     if not touching:
         return np.full(time.shape, grip.force)
-    closed = np.all(touching, axis=0)
+    closed = np.all(touching, axis=0) & np.isfinite(actual)
     commanded = np.full(time.shape, np.nan)
     starts = np.flatnonzero(closed & ~np.r_[False, closed[:-1]])
     for start in starts:
@@ -88,7 +88,7 @@ def grip_force(trace: Trace, name: str, grip: Grip) -> Figure:
     # the error is exactly zero while the control is not active
     active = error != 0.0
     actual = grip.force - error
-    commanded = commanded_force(grip, np.asarray(trace.time), np.where(active, actual, 0.0))
+    commanded = commanded_force(grip, np.asarray(trace.time), np.where(active, actual, np.nan))
     figure = new_figure(COLUMN, 2.2)
     axes = figure.subplots()
     axes.plot(time[active], actual[active], color=XYZ_COLORS[0], linewidth=LINE, label="grip force")

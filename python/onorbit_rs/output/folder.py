@@ -86,7 +86,7 @@ class OutputFolder:
             If the manifest is damaged.
         """
         folder = Path(path)
-        _make(folder)
+        make_folder(folder)
         if not force and not _is_empty(folder):
             if owner_of(folder) is not None:
                 cls(folder).close()  # raises an error that names the process
@@ -293,9 +293,10 @@ class OutputFolder:
         self.manifest = Manifest()
 
 
-def _make(folder: Path) -> None:
+def make_folder(folder: Path) -> None:
+    """Create a folder unless it exists; raise OutputNotWritableError if that is impossible."""
     try:
-        if folder.exists() and not folder.is_dir():
+        if exists(folder) and not folder.is_dir():
             raise OutputNotWritableError(
                 f"the output path {folder} is {file_kind(folder)}, but must be a folder; choose another path",
                 path=str(folder),

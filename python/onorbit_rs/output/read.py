@@ -21,7 +21,14 @@ from onorbit_rs.output.manifest import MANIFEST, SCENARIO, SUMMARY, TRACE, read_
 from onorbit_rs.output.names import split_names
 from onorbit_rs.output.npz_reader import read_arrays
 from onorbit_rs.output.saved_trace import SavedTrace, check_shapes
-from onorbit_rs.output.saved_world import EVENTS, SavedWorldTrace, saved_world, system_in, systems_in
+from onorbit_rs.output.saved_world import (
+    EVENTS,
+    WORLD_COLUMNS,
+    SavedWorldTrace,
+    saved_world,
+    system_in,
+    systems_in,
+)
 from onorbit_rs.scenario import load
 
 if TYPE_CHECKING:
@@ -121,7 +128,7 @@ class SavedRun:
         NotFoundError, IntegrityError, ReadError
             As for :func:`read_trace` and :func:`read_summary`.
         """
-        arrays = self._arrays({"time", "momentum", "kinetic_energy", *(f"events/{name}" for name in EVENTS)})
+        arrays = self._arrays({*WORLD_COLUMNS, *(f"events/{name}" for name in EVENTS)})
         audits = self.summary().get("events", [])
         try:
             return saved_world(arrays, audits)

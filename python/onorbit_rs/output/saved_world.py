@@ -16,7 +16,8 @@ from onorbit_rs.output.saved_trace import SavedTrace
 if TYPE_CHECKING:
     from onorbit_rs._core import EventRecord, Trace, WorldTrace
 
-
+WORLD_COLUMNS = ("time", "momentum", "kinetic_energy")
+"""Names of the columns that describe all systems together."""
 EVENTS = {
     "time": (), "impulse": (6,), "point": (3,), "energy_lost": (), "momentum_error": (2,), "peak_force": (),
 }  # fmt: skip
@@ -117,7 +118,7 @@ def saved_world(arrays: Mapping[str, Any], audits: Sequence[Mapping[str, Any]]) 
             f"{len(audits)}"
         )
     events = [_event(arrays, row, audit) for row, audit in enumerate(audits)]
-    columns = (arrays[name] for name in ("time", "momentum", "kinetic_energy"))
+    columns = (arrays[name] for name in WORLD_COLUMNS)
     return SavedWorldTrace(systems, events, *columns)
 
 

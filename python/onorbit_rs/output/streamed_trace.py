@@ -13,7 +13,7 @@ from onorbit_rs.common.blocks import release
 from onorbit_rs.common.decimate import evenly_spaced
 from onorbit_rs.output.pickling import PickledTrace
 from onorbit_rs.output.saved_trace import SavedTrace
-from onorbit_rs.output.saved_world import PickledWorldTrace, SavedWorldTrace, system_in
+from onorbit_rs.output.saved_world import WORLD_COLUMNS, PickledWorldTrace, SavedWorldTrace, system_in
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Trace, WorldTrace
@@ -126,7 +126,7 @@ class StreamedWorldTrace(_Ending, SavedWorldTrace):
         """Replace all columns by these arrays, which have the same values."""
         for name, own in self.systems.items():
             own.read_from(system_in(arrays, name).arrays)
-        for name in ("time", "momentum", "kinetic_energy"):
+        for name in WORLD_COLUMNS:
             object.__setattr__(self, name, arrays[name])  # the files of the first values are removed
 
     def decimated(self) -> PickledWorldTrace:

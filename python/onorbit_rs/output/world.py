@@ -13,16 +13,13 @@ from onorbit_rs.output.checks import CHECKS
 from onorbit_rs.output.contact_totals import contact_totals
 from onorbit_rs.output.latches import latch_results
 from onorbit_rs.output.pickling import arrays_of
-from onorbit_rs.output.saved_world import EVENTS
+from onorbit_rs.output.saved_world import EVENTS, WORLD_COLUMNS
 from onorbit_rs.output.summary import Summary, run_numbers, summarize
 
 if TYPE_CHECKING:
     from onorbit_rs._core import EventRecord, WorldTrace
     from onorbit_rs.scenario.build_world import BuiltWorld
     from onorbit_rs.scenario.events import Event
-
-WORLD_COLUMNS = ("time", "momentum", "kinetic_energy")
-"""Names of the columns that describe all systems together."""
 
 
 def summarize_world(trace: WorldTrace, built: BuiltWorld, *, status: str = "complete") -> Summary:

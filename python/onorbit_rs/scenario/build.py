@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from onorbit_rs.scenario.world import WorldScenario
 
     Floats = NDArray[np.float64]
+    State = tuple[Floats, Floats]
 
 
 @dataclass(frozen=True)
@@ -75,6 +76,16 @@ def build(scenario: Scenario, *, runs_code: bool = True) -> Built:
     OnOrbitError
         A subclass for the kind of error; its message starts with file, line and key.
     """
+    model, around, state = build_parts(scenario, runs_code=runs_code)
+    state = closed_start(scenario, model, *state)
+    built = build_around(scenario, model, state, around, runs_code=runs_code)
+    for message in built.warnings:
+        warn_user(message)
+    return built
+
+
+def build_parts(scenario: Scenario, *, runs_code: bool) -> tuple[_core.Model, Environment, State]:
+    """Return the robot, the environment and the initial state; the errors of all parts come together."""
     faults, model, around, state = Faults(), None, None, None
     with faults.kept():
         check_record_every(scenario)
@@ -89,21 +100,18 @@ def build(scenario: Scenario, *, runs_code: bool = True) -> Built:
             state = scenario.initial.build(model, None if around is None else around.orbit)
         with faults.kept():
             check_robot(scenario, model)
-            if faults and around is not None:  # otherwise the controllers are checked below
-                controlled(scenario, model, model.neutral(), around.orbit, runs_code=runs_code)
+            if faults and around is not None:  # otherwise the controllers are checked when they are used
+                q = None if state is None else state[0]
+                controlled(scenario, model, q, around.orbit, runs_code=runs_code)
     faults.check()
     assert model is not None and around is not None and state is not None  # otherwise there is a fault
-    state = closed_start(scenario, model, *state)
-    built = build_around(scenario, model, state, around, runs_code=runs_code)
-    for message in built.warnings:
-        warn_user(message)
-    return built
+    return model, around, state
 
 
 def build_around(
     scenario: Scenario,
     model: _core.Model,
-    state: tuple[Floats, Floats],
+    state: State,
     around: Environment,
     *,
     runs_code: bool,
@@ -138,10 +146,10 @@ def build_around(
 
 def check_robot(scenario: Scenario, model: _core.Model) -> None:
     """Raise the errors of the tool, the surfaces and the actuators, which the robot determines."""
-    faults, tool = Faults(), scenario.tracked_tool
-    with faults.kept(), located(scenario, "tool"):
-        if tool is not None:
-            model.frame_pose(model.neutral(), tool)  # raises an error for an unknown frame
+    faults = Faults()
+    with faults.kept(), located(scenario, *scenario.place_of_tool):
+        if scenario.tracked_tool is not None:
+            model.frame_pose(model.neutral(), scenario.tracked_tool)  # raises an error for an unknown frame
     with faults.kept():
         _check_surfaces(scenario, model)
     with faults.kept():
@@ -238,7 +246,7 @@ def check_record_every(scenario: Scenario) -> None:
 def controlled(
     scenario: Scenario,
     model: _core.Model,
-    q: Floats,
+    q: Floats | None,
     orbit: _core.Orbit | None,
     *,
     runs_code: bool,
@@ -247,36 +255,43 @@ def controlled(
     """Return new controllers, or None, and the reference of a single controller, or None.
 
     ``neighbours`` are the systems of the world, by name. Without them, controls that require other systems
-    are omitted.
+    are omitted. Without the initial configuration ``q``, (nq,), only the laws are built, for their errors.
     """
-    folder, tool = scenario.folder, scenario.tool
-    start = Start(model, q, orbit, folder, neighbours=neighbours or {})
     is_alone = neighbours is None
+    start = None if q is None else Start(model, q, orbit, scenario.folder, neighbours=neighbours or {})
     if scenario.controller is not None:
         if is_alone and (_is_moving(scenario.reference) or _grips(scenario.controller)):
             return None, None
         with located(scenario, "controller"):
-            law = scenario.controller.build_law(model, tool, folder, runs_code=runs_code)
+            law = scenario.controller.build_law(model, scenario.tool, scenario.folder, runs_code=runs_code)
         with located(scenario, "reference"):
-            return law, _reference(scenario.reference, replace(start, tool=tool))
+            placed = start and replace(start, tool=scenario.tool)
+            return law, _reference(scenario.reference, placed)
     controls, faults = [], Faults()
     waiting = _waiting(scenario) if is_alone else set()
     for index, part in enumerate(scenario.controllers or []):
         if part.name in waiting:
             continue
         with faults.kept():
-            controls.append(_control(scenario, index, start, runs_code=runs_code))
+            controls.append(_control(scenario, model, index, start, runs_code=runs_code))
     faults.check()
     return controls or None, None
 
 
-def _control(scenario: Scenario, index: int, start: Start, *, runs_code: bool) -> Any:
-    """Return an entry of ``controllers`` as an object of the engine; errors are located at its keys."""
-    part, model, at = (scenario.controllers or [])[index], start.model, ("controllers", index)
+def _control(
+    scenario: Scenario, model: _core.Model, index: int, start: Start | None, *, runs_code: bool
+) -> Any:
+    """Return an entry of ``controllers`` as an object of the engine; errors are located at its keys.
+
+    Without ``start``, only the law is built.
+    """
+    part, at = (scenario.controllers or [])[index], ("controllers", index)
     with located(scenario, *at):
         joints = None if part.joints is None else joint_group(part.joints, list(model.joint_names))
         tool = tool_of(part, scenario.tool)
         law = part.build_law(model, tool, scenario.folder, runs_code=runs_code)
+    if start is None:
+        return law
     load: str | None = getattr(part, "load", None)
     with located(scenario, *at, "load"):
         check_load(load, start.neighbours)
@@ -316,6 +331,8 @@ def _waiting(scenario: Scenario) -> set[str]:
     return found
 
 
-def _reference(part: AnyReference | None, start: Start) -> _core.Reference | _core.JointReference | None:
-    """Return the engine's reference object; None for a controller without a reference."""
-    return None if part is None else part.build(start)
+def _reference(
+    part: AnyReference | None, start: Start | None
+) -> _core.Reference | _core.JointReference | None:
+    """Return the engine's reference object; None for a controller without a reference, or without a start."""
+    return None if part is None or start is None else part.build(start)

@@ -9,6 +9,7 @@ from typing import Any
 
 from onorbit_rs.common.suggestions import did_you_mean, nearest
 from onorbit_rs.exceptions import InputError, ScenarioError
+from onorbit_rs.scenario.locations import dotted
 from onorbit_rs.scenario.yaml_lines import Lines, Location, parse_yaml
 
 _STEP = re.compile(r"\.?(?P<key>[^.\[\]]+)|\[(?P<index>[0-9]{1,6})\]")
@@ -113,7 +114,7 @@ def _entry(inner: Any, step: str | int, path: str, at: Location, following: str 
     if inner.get(step) is None:
         if isinstance(following, int):
             hint = did_you_mean(str(step), inner) or "; set the whole list"
-            raise _invalid(path, f"the scenario has no list {_written((*at, step))!r}{hint}")
+            raise _invalid(path, f"the scenario has no list {dotted((*at, step))!r}{hint}")
         inner[step] = {}
     return inner[step]
 
@@ -122,25 +123,21 @@ def _index(inner: list[Any], step: str | int, path: str, at: Location) -> int:
     """Return the index of an entry of a list; raise InputError if there is no such entry."""
     if not isinstance(step, int) or step >= len(inner):
         if not inner:
-            raise _invalid(path, f"{_written(at)} is an empty list; set the whole list")
-        what = f"{_written(at) or 'the scenario'} is a list of length {len(inner)}"
+            raise _invalid(path, f"{dotted(at)} is an empty list; set the whole list")
+        what = f"{dotted(at) or 'the scenario'} is a list of length {len(inner)}"
         valid = "the index [0]" if len(inner) == 1 else f"an index from [0] to [{len(inner) - 1}]"
         raise _invalid(path, f"{what}; give {valid}")
     return step
 
 
 def _not_inside(path: str, at: Location, inner: Any) -> InputError:
-    where = _written(at) or "the scenario"
+    where = dotted(at) or "the scenario"
     if at and at[-1] == "robot" and isinstance(inner, str):
         hint = "a campaign can vary robot.links and robot.joints, a run takes them from the robot's file"
         return _invalid(path, f"{where} is {inner!r:.40}, which has no such entry; {hint}")
     if isinstance(inner, dict):
         return _invalid(path, f"{where} is a mapping, which has no indices{did_you_mean('', inner)}")
     return _invalid(path, f"{where} is {inner!r:.40}, which has no such entry; set {where} itself")
-
-
-def _written(at: Location) -> str:
-    return "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in at).removeprefix(".")
 
 
 def _invalid(path: str, why: str) -> InputError:

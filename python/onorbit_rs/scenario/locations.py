@@ -6,12 +6,20 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from onorbit_rs.exceptions import OnOrbitError, ScenarioError
 
 if TYPE_CHECKING:
     from onorbit_rs.scenario.document import Document
+
+
+class Spot(NamedTuple):
+    """Entry of a scenario to which an error refers."""
+
+    file: str | None
+    path: str | None
+    line: int | None
 
 
 def dotted(at: tuple[str | int, ...]) -> str:
@@ -38,17 +46,19 @@ def located(scenario: Document, *at: str | int) -> Iterator[None]:
     except OnOrbitError as error:
         if getattr(error, "located", False):
             raise
-        line = scenario.line_of(*at)
-        where = file_and_line(scenario.file, line)
-        error.message = f"{where}: {dotted(scenario.location(*at))}: {error.message}"
-        error.located = line or True  # type: ignore[attr-defined]  # inner blocks are more specific
+        line, path = scenario.line_of(*at), dotted(scenario.location(*at))
+        error.message = f"{file_and_line(scenario.file, line)}: {path}: {error.message}"
+        file = str(scenario.file) if scenario.file else None
+        error.located = Spot(file, path, line)  # type: ignore[attr-defined]  # inner blocks are more specific
         raise
 
 
-def line_of_error(error: OnOrbitError) -> int:
-    """Return the line of the scenario's file to which an error refers; 0 if it is unknown."""
-    line = getattr(error, "located", None) or (error.line if isinstance(error, ScenarioError) else None)
-    return 0 if line is None or line is True else int(line)
+def spot_of(error: OnOrbitError) -> Spot:
+    """Return where in a scenario the cause of an error is; unknown parts are None."""
+    if isinstance(error, ScenarioError):
+        return Spot(error.file, error.path, error.line)
+    spot: Spot = getattr(error, "located", None) or Spot(None, None, None)
+    return spot
 
 
 @contextmanager

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, cast
 
 from onorbit_rs.exceptions import OnOrbitError, ScenarioError
-from onorbit_rs.scenario.build import build
+from onorbit_rs.scenario.build import build_parts
 from onorbit_rs.scenario.faults import Faults
 from onorbit_rs.scenario.schema import Scenario
 from onorbit_rs.scenario.validation_errors import combined
@@ -33,7 +33,7 @@ def with_robot_errors(
         warnings.simplefilter("ignore")
         for alone in _robots(data, wrong, file, lines):
             with faults.kept():
-                build(alone, runs_code=False)
+                build_parts(alone, runs_code=False)
     return cast("ScenarioError", combined([error, *faults.errors]))
 
 

@@ -61,8 +61,19 @@ class RobotKeys(Part):
     @property
     def tracked_tool(self) -> str | None:
         """Recorded frame: the ``tool`` of the scenario, otherwise the first tool of a control, or None."""
-        tools = (getattr(control, "tool", None) for control in self.controllers or [])
-        return self.tool or next(filter(None, tools), None)
+        return self._tracked_tool[0]
+
+    @property
+    def place_of_tool(self) -> Location:
+        """Location of :attr:`tracked_tool`."""
+        return self._tracked_tool[1]
+
+    @property
+    def _tracked_tool(self) -> tuple[str | None, Location]:
+        for index, control in enumerate(self.controllers or [] if self.tool is None else []):
+            if tool := getattr(control, "tool", None):
+                return tool, ("controllers", index, "tool")
+        return self.tool, ("tool",)
 
 
 class Scenario(RobotKeys, Document):

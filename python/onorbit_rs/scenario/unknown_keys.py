@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any, TypeVar
+from typing import Any, TypeVar, get_args
 
 from pydantic import ValidationError
-from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError
+from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError, core_schema
 
 from onorbit_rs.scenario.errors import unknown_key
 
 T = TypeVar("T")
+_KINDS = frozenset(get_args(core_schema.ErrorType))
+"""Types of error that pydantic can raise again by their names; all others are custom errors."""
 
 
 def without_unknown_keys(value: Any, unknown: Mapping[Any, str], validate: Callable[[Any], T]) -> T:
@@ -32,7 +34,7 @@ def without_unknown_keys(value: Any, unknown: Mapping[Any, str], validate: Calla
             is_meant = details["type"] == "missing" and any(
                 repr(details["loc"][-1]) in hint for hint in unknown.values()
             )
-            if (at or details["type"] == "missing") and not is_meant:
+            if (at or details["type"] in ("missing", "unknown_key")) and not is_meant:
                 errors.append(_again(details))
     raise ValidationError.from_exception_data("part", errors)
 
@@ -40,7 +42,7 @@ def without_unknown_keys(value: Any, unknown: Mapping[Any, str], validate: Calla
 def _again(details: ErrorDetails) -> InitErrorDetails:
     """Return an error in the form in which it can be raised again."""
     kind, context = details["type"], details.get("ctx", {})
-    if kind in ("unknown_key", "inconsistent", "invalid"):
+    if kind not in _KINDS:
         custom = PydanticCustomError(kind, "{message}", {**context, "message": details["msg"]})
         return InitErrorDetails(type=custom, loc=details["loc"], input=details["input"])
     return InitErrorDetails(type=kind, loc=details["loc"], input=details["input"], ctx=context)

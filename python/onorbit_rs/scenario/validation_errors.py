@@ -14,7 +14,7 @@ from onorbit_rs.common.counting import count
 from onorbit_rs.common.suggestions import did_you_mean, nearest
 from onorbit_rs.exceptions import OnOrbitError, ScenarioError
 from onorbit_rs.scenario.errors import shortened
-from onorbit_rs.scenario.locations import dotted, line_of_error, scenario_error
+from onorbit_rs.scenario.locations import dotted, scenario_error, spot_of
 from onorbit_rs.scenario.yaml_lines import Lines, Location, line_of
 
 MOST_ERRORS = 20
@@ -43,19 +43,20 @@ def first_error(
 
 
 def combined(errors: Sequence[OnOrbitError]) -> OnOrbitError:
-    """Return several errors of a scenario as one error with a line for each, and the attributes of the first.
+    """Return several errors of a scenario as one error with a line for each, and the location of the first.
 
     The errors are in the order of the file. A single error is returned unchanged.
     """
     given = [own for error in errors for own in (getattr(error, "errors", None) or (error,))]
-    found = sorted({str(error): error for error in given}.values(), key=line_of_error)
+    found = sorted(
+        {str(error): error for error in given}.values(), key=lambda error: spot_of(error).line or 0
+    )
     if len(found) == 1:
         return found[0]
     lines = [str(error) for error in found[:MOST_ERRORS]]
     if len(found) > MOST_ERRORS:
         lines.append(f"and {len(found) - MOST_ERRORS} more")
-    file, path, line = (getattr(found[0], name, None) for name in ("file", "path", "line"))
-    return ScenarioError("\n".join(lines), file=file, path=path, line=line, errors=tuple(found))
+    return ScenarioError("\n".join(lines), **spot_of(found[0])._asdict(), errors=tuple(found))
 
 
 def _location_and_message(details: ErrorDetails, data: Any) -> tuple[Location, str]:

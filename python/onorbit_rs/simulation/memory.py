@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from onorbit_rs.common.user_warnings import warn_user
-from onorbit_rs.exceptions import InputError
+from onorbit_rs.exceptions import InputError, OutputFolderError
 from onorbit_rs.output.columns import row_shape
 from onorbit_rs.scenario.build_world import BuiltWorld
 from onorbit_rs.scenario.targets import task_references
@@ -88,8 +88,9 @@ def check_size(
 
     Raises
     ------
-    InputError
-        If the rows do not fit; the message has a value of ``record_every`` with which they fit.
+    InputError, OutputFolderError
+        If the rows do not fit into the memory or on the disk; the message has a value of ``record_every``
+        with which they fit.
     """
     size = estimated_bytes(built)
     if size <= FITTING:
@@ -135,11 +136,12 @@ def _check_disk(built: Built | BuiltWorld, folder: Path, size: float, compress: 
         )
         fits = not compress and size * (1.0 + COMPRESSED) <= space
         other = "use --compress (compress=True), " if fits else ""
-        raise _too_large(
+        raise OutputFolderError(
             f"the run records {rows_of(built)} rows, about {_text(size)}, and needs {_text(needed)} on "
             f"the disk of {folder}, where {_text(space)} is available; delete files to make room, "
-            f"{other}or set simulation.record_every to {every}", built, every,
-        )  # fmt: skip
+            f"{other}or set simulation.record_every to {every}",
+            path=str(folder),
+        )
 
 
 def _numbers_per_row(built: Built) -> int:

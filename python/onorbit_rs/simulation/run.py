@@ -197,8 +197,8 @@ def run(
     OnOrbitError
         Before the run starts: for an invalid scenario (``ScenarioError``), a missing file
         (``NotFoundError``), an invalid command or change (``InputError``, ``ControlError``, …), rows that
-        need more memory or disk space than is available (``InputError``), or a folder that is not empty, not
-        writable or in use by another process (``OutputFolderError``).
+        need more memory than is available (``InputError``), or a folder that is not empty, not writable, in
+        use by another process, or on a disk with too little space for the rows (``OutputFolderError``).
     SimulationError
         If the run diverges; the trace before the divergence is in the error and in ``out``.
     RunInterrupted

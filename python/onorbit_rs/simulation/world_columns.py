@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from onorbit_rs.output.saved_world import WORLD_COLUMNS
 from onorbit_rs.output.streamed_trace import mapped_columns
-from onorbit_rs.output.world import WORLD_COLUMNS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,7 +21,10 @@ if TYPE_CHECKING:
 def finger_contacts(
     control: GripForceController, system: str, model: Model, contacts: Sequence[Contact]
 ) -> tuple[tuple[str, ...], ...]:
-    """Return the names of the contacts of each finger of a gripper; no fingers if one has no contact.
+    """Return the names of the contacts of each finger of a gripper.
+
+    The result is empty if a finger has no contact, or if a contact belongs to several fingers, so that its
+    force does not tell which of them touch.
 
     Parameters
     ----------
@@ -42,7 +46,8 @@ def finger_contacts(
         )
         for joint in _joints(control, model)
     ]
-    return tuple(fingers) if all(fingers) else ()
+    is_shared = len({*chain(*fingers)}) < sum(map(len, fingers))
+    return tuple(fingers) if all(fingers) and not is_shared else ()
 
 
 def _joints(control: GripForceController, model: Model) -> list[int]:
