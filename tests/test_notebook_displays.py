@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import sys
 from html import unescape
@@ -146,6 +147,7 @@ def notebook(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
         "IPython.display": {"display": lambda *shown: found.shown.extend(shown)},
         "rerun_notebook": {"Viewer": Viewer, "ErrorWidget": object},
     }
+    monkeypatch.delenv("RERUN_NOTEBOOK_ASSET", raising=False)
     for name, content in modules.items():
         module = ModuleType(name)
         vars(module).update(content)
@@ -161,8 +163,21 @@ def spheres() -> oo.Run:
 def test_show_sends_the_recording_of_a_run(notebook: SimpleNamespace, spheres: oo.Run) -> None:
     oo.show(spheres, height=300)
     widget = notebook.shown[-1]
-    assert widget.size == {"width": "auto", "height": 300}
+    assert widget.size == {"width": "auto", "height": 300, "theme": "dark"}
+    assert os.environ["RERUN_NOTEBOOK_ASSET"] == "inline", "the installed copy, which needs no connection"
     assert widget.sent.startswith(b"RRF2") and len(widget.sent) > 10_000
+
+
+def test_show_keeps_the_source_of_the_viewer_that_the_user_has_chosen(
+    notebook: SimpleNamespace,
+    spheres: oo.Run,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setenv("RERUN_NOTEBOOK_ASSET", "serve-local")
+    oo.show(spheres)
+    assert os.environ["RERUN_NOTEBOOK_ASSET"] == "serve-local"
+    assert capsys.readouterr().out == ""
 
 
 def test_show_reads_the_recording_of_a_folder(notebook: SimpleNamespace, tmp_path: Path) -> None:

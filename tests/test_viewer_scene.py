@@ -117,6 +117,11 @@ def test_the_map_has_land_at_the_right_places() -> None:
     share = (land().mean(axis=1) * area).sum() / area.sum()
     assert abs(share - 0.291) < 0.01  # fraction of the Earth's surface (CIA World Factbook: 29.1 %)
     places = {(52, 21): True, (0, 25): True, (-25, 135): True, (40, -100): True, (-85, 0): True}
+    places |= {
+        (42, 51): False,
+        (47.6, -87.7): False,
+        (-1, 33): False,
+    }  # Caspian Sea, lakes Superior, Victoria
     places |= {(0, -30): False, (0, -150): False, (-40, 90): False, (40, 170): False}
     for (latitude, longitude), expected in places.items():
         row, column = int(2 * (90 - latitude)), int(2 * (longitude + 180))
@@ -127,6 +132,14 @@ def test_the_map_has_land_at_the_right_places() -> None:
     assert colors.shape == (360, 720, 3)
     warsaw, pacific = colors[76, 402], colors[180, 60]
     assert warsaw[1] > warsaw[2] and pacific[2] > pacific[1]  # green, blue
+    inland, norway, pole, ross = (
+        colors[2 * (90 - 72), 2 * (180 - 40)],
+        colors[40, 420],
+        colors[1, 360],
+        colors[338, 10],
+    )
+    assert inland.min() > 200 and pole.min() > 200 and ross.min() > 200  # Greenland, sea ice, ice shelf
+    assert norway[1] > norway[0]
 
 
 def test_the_earth_rotates_and_night_is_opposite_to_the_sun(tmp_path: Path) -> None:

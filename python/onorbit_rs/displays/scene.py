@@ -19,12 +19,12 @@ from onorbit_rs.tables import RecordedRun
 
 
 def show(
-    source: Run | RecordedRun | str | os.PathLike[str], *, width: int | None = None, height: int = 540
+    source: Run | RecordedRun | str | os.PathLike[str], *, width: int | None = None, height: int = 720
 ) -> None:
     """Display a run in the viewer, below the cell of a notebook.
 
-    The viewer runs in the browser, which downloads it from app.rerun.io. The run itself stays on this
-    machine.
+    The viewer runs in the browser, to which the installed copy is sent; no connection to the internet is
+    needed, unless the environment variable ``RERUN_NOTEBOOK_ASSET`` selects another copy.
 
     Parameters
     ----------

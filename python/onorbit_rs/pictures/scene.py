@@ -115,12 +115,17 @@ class Scene:
         )
 
     def corners(self) -> Floats:
-        """Return corners (k, 3), m, of boxes around the shapes of the first robot and of those near it."""
+        """Return corners (k, 3), m, of boxes around the first robot, and around what is near it.
+
+        These are other robots, and paths of tools that are not much longer than the robots.
+        """
         boxes = []
         for member in self.members:
             q = np.asarray(member.trace.q)[self._row(member)]
             boxes.append(self.seen_from(corners_of(member.model, shapes(member.model), q[None])))
         size = max(float(np.linalg.norm(np.ptp(box, axis=0))) for box in boxes)
+        paths = [points[np.isfinite(points).all(axis=1)] for _, points in self.paths()]
+        boxes += [path for path in paths if len(path) and np.linalg.norm(np.ptp(path, axis=0)) < 1.5 * size]
         near = [box for box in boxes if np.linalg.norm(box.mean(axis=0)) < NEARBY * size]
         return np.concatenate(near)
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from onorbit_rs.visuals.earth_shape import EARTH_FLATTENING, EARTH_RADIUS_KM
-from onorbit_rs.visuals.land import land_fraction
+from onorbit_rs.visuals.land import ice_fraction, land_fraction
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -99,9 +99,12 @@ class Sky:
             return np.broadcast_to(_SEA, normal.shape)
         x, y, z = np.moveaxis(normal @ self.rot_ei.T, -1, 0)
         latitude, longitude = np.degrees(np.arcsin(z.clip(-1.0, 1.0))), np.degrees(np.arctan2(y, x))
-        is_ice = (latitude > 72.0) | (latitude < -60.0)
         share = _smooth((land_fraction(latitude, longitude) - 0.42) / 0.16)[..., None]
-        return (1.0 - share) * _SEA + share * np.where(is_ice[..., None], _ICE, _LAND)
+        sea, land = (
+            color + _smooth(ice_fraction(latitude, longitude, is_land=is_land))[..., None] * (_ICE - color)
+            for color, is_land in ((_SEA, False), (_LAND, True))
+        )
+        return (1.0 - share) * sea + share * land
 
 
 def _smooth(x: Floats) -> Floats:
