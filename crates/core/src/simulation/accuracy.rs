@@ -69,6 +69,13 @@ impl<S: Scalar> Accuracy<S> {
     /// Completes the checks of the last step, which ended at time `t`, s. Requires that the base twists in
     /// `state` have been projected onto the momentum, and that `equations` contain the kinematics of `state`.
     pub(super) fn end_step(&mut self, t: f64, state: &State<S>, equations: &Equations<'_, S>) {
+        if !self.every_step.is_empty() {
+            self.end_checked_step(t, state, equations);
+        }
+    }
+
+    #[cold]
+    fn end_checked_step(&mut self, t: f64, state: &State<S>, equations: &Equations<'_, S>) {
         for (every_step, (state, tree)) in self.every_step.iter_mut().zip(pairs(state, &equations.trees)) {
             every_step.end(t, state, tree);
         }
@@ -101,7 +108,7 @@ impl<S: Scalar> Accuracy<S> {
 
     /// Stores the start of a step over `interval`, s, for the checks, and probes the step with the index
     /// `probed` if it is not `None`.
-    #[inline(never)]
+    #[cold]
     fn measure_start(
         &mut self,
         probed: Option<usize>,
@@ -145,11 +152,27 @@ impl<S: Scalar> Accuracy<S> {
                 errors.jumps.add_step(&ends, &tree.command, h, is_smooth);
             }
         }
-        for (every_step, ends) in self.every_step.iter_mut().zip(integration.stages.ends()) {
+        if self.every_step.is_empty() {
+            return Ok(());
+        }
+        self.check_step(interval, state, equations, &integration.stages, buffers)
+    }
+
+    /// Adds the completed step over `interval`, s, which ended at `state`, to the checks.
+    #[cold]
+    fn check_step(
+        &mut self,
+        interval: (f64, f64),
+        state: &State<S>,
+        equations: &mut Equations<'_, S>,
+        stages: &Stages<S>,
+        buffers: &mut (State<S>, Stages<S>),
+    ) -> Result<(), SimulationError> {
+        for (every_step, ends) in self.every_step.iter_mut().zip(stages.ends()) {
             every_step.add_stages(&ends);
         }
         if self.is_recorded {
-            self.complete_rows(equations, &integration.stages, EveryStep::complete_start);
+            self.complete_rows(equations, stages, EveryStep::complete_start);
             if state.is_finite() {
                 return self.record_end(interval, state, equations, buffers);
             }
@@ -159,7 +182,7 @@ impl<S: Scalar> Accuracy<S> {
 
     /// Records the end of a step whose base rows of inverse dynamics are checked. Writes the state at the
     /// end, with projected base twists, and its accelerations to the buffers `(end, stages)`.
-    #[inline(never)]
+    #[cold]
     fn record_end(
         &mut self,
         interval: (f64, f64),

@@ -39,6 +39,9 @@ impl<'a, S: Scalar> Controllers<'a, S> {
         state: &TreeState<S>,
         system: &Tree<'_, S>,
     ) -> Result<Option<(&TaskSample<f64>, bool)>, SimulationError> {
+        if self.reference.is_none() && self.set.controls().is_empty() {
+            return Ok(None);
+        }
         self.set.update_errors(t, &system.model, &system.data, &state.q, &state.v)?;
         if let Some(reference) = self.reference {
             let sample = reference.sample(t, 0.0);

@@ -3,6 +3,7 @@
 use super::contacts::Contacts;
 use super::engine::{BodyWeld, ContactOutput, EngagedBrake, Engine, StepInput, StepOutput};
 use super::error::SimulationError;
+use super::recorder::Recorder;
 use super::recording::Ledger;
 use super::state::State;
 use super::state_range::attitude_norm;
@@ -58,8 +59,19 @@ impl<'a> ExternalEngine<'a> {
         self.has_output.then(|| &self.output.acceleration[range.clone()])
     }
 
+    /// Adds the acceleration of the system with index `system` at the start of the last step to the last row
+    /// in `recorder`, or removes the row if that step failed.
+    #[cold]
+    pub(super) fn complete_row(&self, system: usize, recorder: &mut Recorder, model: &Model) {
+        match self.first_acceleration(system) {
+            Some(acceleration) => recorder.record_acceleration(model, acceleration),
+            None => recorder.drop_last_row(),
+        }
+    }
+
     /// Returns the work done on a system in the last step, including the work of its connections and
     /// contacts, less the energy that its joints dissipated, J.
+    #[cold]
     pub(super) fn work_of_step(&self, system: usize) -> f64 {
         let done = &self.output.systems[system];
         done.work + done.weld_work
@@ -67,6 +79,7 @@ impl<'a> ExternalEngine<'a> {
 
     /// Returns the output of the last step for the declared contact with index `number`; `None` if that step
     /// failed, or if the engine does not compute its force.
+    #[cold]
     pub(super) fn contact(&self, number: usize) -> Option<&ContactOutput> {
         let own = self.contacts[number]?;
         self.has_output.then(|| &self.output.contacts[own])
@@ -84,6 +97,7 @@ impl<'a> ExternalEngine<'a> {
     /// Subtracts from the totals of a group the impulses that connections and contacts exchanged between its
     /// systems in the last step. Their work remains in the totals; the energy that they absorb is added to
     /// the dissipated energy.
+    #[cold]
     pub(super) fn remove_exchanged(&self, ledger: &mut Ledger) {
         for done in &self.output.systems {
             let impulse = Force::from_slice(&done.weld_impulse);

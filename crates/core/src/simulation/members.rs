@@ -95,6 +95,19 @@ impl<S: Scalar> Members<'_, S> {
             part.follow(&trees[part.tree], &states[part.tree]);
         }
     }
+
+    /// Passes the modes of the joints of the trees to their parts.
+    #[cold]
+    pub(super) fn take_modes(&mut self, trees: &[Tree<'_, S>]) {
+        self.parts.iter_mut().for_each(|part| part.take_modes(&trees[part.tree]));
+    }
+
+    /// Computes the states and the balances of all parts for a row.
+    #[cold]
+    pub(super) fn prepare_rows(&mut self, trees: &[Tree<'_, S>], states: &[TreeState<S>]) {
+        self.follow(trees, states);
+        self.parts.iter_mut().for_each(Part::update_balance);
+    }
 }
 
 impl<'a, S: Scalar> Part<'a, S> {

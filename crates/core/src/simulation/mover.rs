@@ -129,10 +129,7 @@ impl<S: Scalar> Mover<'_, S> {
             Self::Native(method) => {
                 recorder.record_acceleration(model, &method.integration.stages.first[number].acceleration);
             }
-            Self::External(engine) => match engine.first_acceleration(number) {
-                Some(acceleration) => recorder.record_acceleration(model, acceleration),
-                None => recorder.drop_last_row(),
-            },
+            Self::External(engine) => engine.complete_row(number, recorder, model),
         }
     }
 

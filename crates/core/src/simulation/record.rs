@@ -1,14 +1,16 @@
 //! Recording of rows: at the start of steps, within steps, at impacts and at the end of the run.
 
-use super::contacts::{Touched, at_time};
+use super::contacts::{Contacts, Touched, at_time};
 use super::environment_loads::EnvironmentLoads;
 use super::equations::EquationsOfMotion;
 use super::error::SimulationError;
-use super::members::{Part, Place};
+use super::members::Place;
 use super::mover::Mover;
 use super::run_state::RunState;
 use super::run_system::RunSystem;
 use super::schedule::Interval;
+use super::state::State;
+use super::tree::Tree;
 use super::tree_state::TreeState;
 use crate::spatial::Scalar;
 
@@ -117,17 +119,15 @@ impl<S: Scalar> RunState<'_, S> {
         let EquationsOfMotion { trees, members, loads, contacts, .. } = equations;
         let orbit = loads.reference_state(t)?;
         if !members.parts.is_empty() {
-            members.follow(trees, &state.trees);
-            members.parts.iter_mut().for_each(Part::update_balance);
+            members.prepare_rows(trees, &state.trees);
             row_states.clone_from(&state.trees);
         }
         for (number, run) in systems.iter_mut().enumerate() {
             let (state, system) = members.system(number, trees, &state.trees);
             run.add_row(t, state, system, loads, orbit)?;
         }
-        for contact in 0..contacts.count() {
-            let row = contacts.row(contact, trees, state).map_err(at_time(t))?;
-            systems[contacts.owner(contact)].recorder.record_contact(&contacts.names[contact], &row);
+        if contacts.count() > 0 {
+            record_contacts(t, systems, contacts, trees, state)?;
         }
         if self.systems.iter().any(|run| !run.recorder.trace.loops.is_empty()) {
             self.record_loops(is_within_step);
@@ -159,6 +159,22 @@ impl<S: Scalar> RunState<'_, S> {
     }
 }
 
+/// Adds the values of every contact at `t`, s, to the last rows of the systems that own the contacts.
+#[inline(never)]
+fn record_contacts<S: Scalar>(
+    t: f64,
+    systems: &mut [RunSystem<'_, S>],
+    contacts: &mut Contacts,
+    trees: &[Tree<'_, S>],
+    state: &State<S>,
+) -> Result<(), SimulationError> {
+    for contact in 0..contacts.count() {
+        let row = contacts.row(contact, trees, state).map_err(at_time(t))?;
+        systems[contacts.owner(contact)].recorder.record_contact(&contacts.names[contact], &row);
+    }
+    Ok(())
+}
+
 /// Adds the accelerations, and the contact forces that an external engine computes, to the rows at the start
 /// of the last step. If systems share trees, `row_states` are the states of the trees in these rows.
 pub(super) fn complete_rows<S: Scalar>(
@@ -168,9 +184,11 @@ pub(super) fn complete_rows<S: Scalar>(
     row_states: &[TreeState<S>],
 ) {
     let EquationsOfMotion { trees, members, contacts, .. } = equations;
-    for contact in 0..contacts.count() {
-        let recorder = &mut systems[contacts.owner(contact)].recorder;
-        mover.complete_contact(contact, &contacts.names[contact], recorder);
+    if mover.is_external() {
+        for contact in 0..contacts.count() {
+            let recorder = &mut systems[contacts.owner(contact)].recorder;
+            mover.complete_contact(contact, &contacts.names[contact], recorder);
+        }
     }
     for (number, run) in systems.iter_mut().enumerate() {
         match members.places[number] {

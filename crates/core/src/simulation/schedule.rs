@@ -97,6 +97,9 @@ impl Schedule {
     /// Returns the time, s, of the first event between `t` and `end` that became known during the run, or
     /// `end` if there is none.
     pub(super) fn first_due(&self, t: f64, end: f64) -> f64 {
+        if self.due.is_empty() {
+            return end;
+        }
         let is_between = |due: &f64| *due > t + self.tolerance() && *due < end - self.tolerance();
         self.due.iter().copied().filter(is_between).fold(end, f64::min)
     }
@@ -241,8 +244,20 @@ impl Schedule {
         }
         let last = self.duration.unwrap_or(now + LONGEST_INTERVAL * self.time_step);
         let grid = if self.cuts_at_grid { next_grid as f64 * self.time_step } else { last };
-        let mut end = if self.is_beyond(grid, last) { last } else { grid };
-        let due = self.due.iter().copied().filter(|t| *t > now + self.tolerance());
+        let end = if self.is_beyond(grid, last) { last } else { grid };
+        let has_own_ticks = self.periods().any(|period| !(self.cuts_at_grid && period == self.time_step));
+        let has_only_grid = next_event == self.events.len() && self.due.is_empty() && !has_own_ticks;
+        let end = if has_only_grid { end } else { self.first_cut(next_event, end) };
+        let is_event = next_event > events_before || self.due.iter().any(|&t| self.is_now(t));
+        let interval = Interval { start: now, end, grid_step, is_event };
+        Some((interval, Cursor { now: end, next_grid, next_event }))
+    }
+
+    /// Returns the first cut after the current one, s, if the next cut of the grid, or the end of the run, is
+    /// at `end`, s, and the next event has the index `next_event`.
+    #[inline(never)]
+    fn first_cut(&self, next_event: usize, mut end: f64) -> f64 {
+        let due = self.due.iter().copied().filter(|t| *t > self.at.now + self.tolerance());
         let is_on_grid = |period: &f64| self.cuts_at_grid && *period == self.time_step;
         let ticks = self.periods().filter(|period| !is_on_grid(period)).map(|period| self.next_tick(period));
         for cut in ticks.chain(self.events.get(next_event).copied()).chain(due) {
@@ -250,9 +265,7 @@ impl Schedule {
                 end = cut;
             }
         }
-        let is_event = next_event > events_before || self.due.iter().any(|&t| self.is_now(t));
-        let interval = Interval { start: now, end, grid_step, is_event };
-        Some((interval, Cursor { now: end, next_grid, next_event }))
+        end
     }
 
     /// Ends the current interval at `t`, s, which becomes the current cut.

@@ -79,7 +79,9 @@ impl<S: Scalar> RunState<'_, S> {
             self.take_touches();
         }
         let EquationsOfMotion { trees, members, .. } = &mut self.equations;
-        members.parts.iter_mut().for_each(|part| part.take_modes(&trees[part.tree]));
+        if !members.parts.is_empty() {
+            members.take_modes(trees);
+        }
         Ok(end)
     }
 

@@ -252,7 +252,7 @@ impl<'a, S: Real> Tree<'a, S> {
         }
         self.update_joint_forces(q, v);
         self.accelerate(v, &mut rate.a);
-        let Self { model, data, forces, modes, frame_velocity, is_lossy, shares, mass, .. } = self;
+        let Self { model, data, forces, modes, frame_velocity, is_lossy, mass, .. } = self;
         let loaded = if is_loaded { model.nodes().len() } else { 0 };
         for joint in modes.given().iter().map(|given| given.joint) {
             forces[BASE_NV + joint] = data.bodies[joint + 1].holding_torque; // its power is work
@@ -266,13 +266,20 @@ impl<'a, S: Real> Tree<'a, S> {
             || base_rates(data, loaded, q, v, *frame_velocity, forces, rate),
         );
         if *is_lossy {
-            rate.loss = S::enter(
-                #[inline(always)]
-                || modes.loss(model, v),
-            );
-            for (share, joints) in rate.shares.iter_mut().zip(shares) {
-                *share = modes.loss_of(model, v, joints.iter().copied());
-            }
+            self.losses(v, rate);
+        }
+    }
+
+    /// Writes the power that friction dissipates in the joints at the velocity `v` to `rate`.
+    #[inline(never)]
+    fn losses(&self, v: &[S], rate: &mut TreeRate<S>) {
+        let Self { model, modes, shares, .. } = self;
+        rate.loss = S::enter(
+            #[inline(always)]
+            || modes.loss(model, v),
+        );
+        for (share, joints) in rate.shares.iter_mut().zip(shares) {
+            *share = modes.loss_of(model, v, joints.iter().copied());
         }
     }
 
