@@ -219,7 +219,7 @@ def test_joints_that_a_control_accelerates_without_bound_end_an_adaptive_run():
     with (
         pytest.warns(UserWarning, match="'follow' moves"),
         pytest.raises(
-            SimulationError, match=r"requires steps of .* although the controllers act every 0\.01 s"
+            SimulationError, match=r"requires steps of .* far shorter than the control period of 0\.01 s"
         ) as error,
     ):
         simulation.run(100.0)

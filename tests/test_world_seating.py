@@ -141,8 +141,8 @@ def test_pieces_and_checkpoints_during_the_seating_have_the_same_bits():
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"seat": 0.0}, "duration of the seat"),
-        ({"seat": float("nan")}, "duration of the seat"),
+        ({"seat": 0.0}, "duration of the seating"),
+        ({"seat": float("nan")}, "duration of the seating"),
         ({"pose": np.eye(4)}, "a pose without seat"),
         ({"seat": 1.0, "pose": np.diag([2, 2, 2, 1])}, "rotation"),
         ({"seat": 1.0, "pose": pose([0, 0, 0], [0, -1e6, 0])}, "distance.*is 1000000 m.*at most 1000 m"),

@@ -28,9 +28,9 @@ OutOption = Annotated[Path | None, typer.Option("--out", "-o", metavar="DIR", he
 ForceOption = Annotated[bool, typer.Option("--force", help="Replace an existing run in DIR.")]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON only.")]
 QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="Print no progress and no summary.")]
-FiguresOption = Annotated[bool, typer.Option("--figures/--no-figures", help="Draw the figures in DIR.")]
+FiguresOption = Annotated[bool, typer.Option("--figures/--no-figures", help="Write figures to DIR.")]
 RecordingOption = Annotated[
-    bool, typer.Option("--recording/--no-recording", help="Write the recording for the viewer in DIR.")
+    bool, typer.Option("--recording/--no-recording", help="Write the recording for the viewer to DIR.")
 ]
 CompressOption = Annotated[
     bool, typer.Option("--compress/--no-compress", help="Compress trace.npz to about 70 % of its size.")

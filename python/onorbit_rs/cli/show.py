@@ -20,7 +20,7 @@ def show(
     folder: FolderArgument,
     viewer: Annotated[bool, typer.Option(help="Open the recording if a display is available.")] = True,
     picture: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Draw the scene as PNG; requires no display.")
+        Path | None, typer.Option(metavar="FILE", help="Draw the scene as a PNG file; requires no display.")
     ] = None,
     at: Annotated[
         float | None, typer.Option(metavar="SECONDS", help="Time of the picture, s; default: 0.")

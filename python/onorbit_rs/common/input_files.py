@@ -44,7 +44,7 @@ def check_regular(path: str | os.PathLike[str], kind: str = "file") -> None:
         raise _unreadable(path, str(getattr(error, "strerror", None) or error), kind) from None
     if stat.S_ISDIR(mode):
         raise ReadError(
-            f"{path} is a folder; give the path of a {kind}{'' if kind == 'file' else ' file'}",
+            f"{path} is a folder; give the path of a file{'' if kind == 'file' else f' ({kind})'}",
             path=str(path),
             kind=kind,
         )

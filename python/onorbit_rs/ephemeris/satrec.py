@@ -58,8 +58,8 @@ def read(satrec: Any, by_reference: bool) -> tuple[SimpleNamespace, str]:
         elements = SimpleNamespace(**{name: getattr(satrec, name) for name in names})
     except AttributeError:
         raise InputError(
-            f"satrec is of type {type(satrec).__name__}; it must be a Satrec of PyPI's sgp4, from "
-            "Satrec.twoline2rv or sgp4init",
+            f"satrec is of type {type(satrec).__name__}; it must be a Satrec of the Python package sgp4, "
+            "created by Satrec.twoline2rv or initialized by sgp4init",
             name="satrec",
         ) from None
     for name in _NUMBERS:

@@ -84,7 +84,8 @@ def plot(source: Run | RecordedRun | Trace | WorldTrace, *columns: str) -> Figur
     for column in columns:
         if not isinstance(column, str):
             raise InputError(
-                f"a column is {column!r:.40} of type {type(column).__name__}; give its name, such as 'tau'",
+                f"each column must be a name, such as 'tau', but {column!r:.40} is of type "
+                f"{type(column).__name__}",
                 name="columns", got=column, expected="str",
             )  # fmt: skip
     lines = selected(lines_of(source), columns)

@@ -89,7 +89,7 @@ def replace_parts(
 
     def refused(*_: Any) -> None:
         raise ValueError(
-            "the installed version of xacro is not supported, because it would execute Python code of the "
+            "the installed version of xacro is not supported, because it would execute Python code from the "
             "file; install xacro 2.1"
         )
 

@@ -118,7 +118,7 @@ def _one(time: float, data: bytes) -> tuple[NDArray[np.int64], NDArray[np.uint8]
 
 
 def _windows(source: Recorded) -> Iterator[tuple[float, dict[str, Rows]]]:
-    """Yield consecutive parts of the rows of all systems, each after the fraction done with this part."""
+    """Yield the rows of all systems in consecutive intervals, each with the progress after it (0 to 1)."""
     longest = max(source.rows.values(), key=len).time
     bounds = np.array([-np.inf, *longest[_ROWS::_ROWS], np.inf])
     for count, (start, end) in enumerate(pairwise(bounds), 1):

@@ -71,7 +71,7 @@ class LiveRun:
         self.restart()
 
     def restart(self) -> None:
-        """Return to the start; controllers in Python are reset if their initial state could be saved."""
+        """Restart at time zero; controllers in Python are reset if their initial state could be saved."""
         self._stepper: Stepper = self._simulation.start(duration=self._planned, resume=self._beginning)
         self._rows = LiveRows(self._stepper, self.models)
         self._event_count = 0

@@ -53,7 +53,7 @@ class RealTime:
         self._late = Delays(self.tick)
 
     def calibrate(self) -> None:
-        """Measure how late the operating system ends sleeps, which takes about 10 ms."""
+        """Measure for about 10 ms how late the operating system ends sleeps, and set ``early``."""
         found = []
         for _ in range(_PROBES):
             begin = self.clock()

@@ -17,7 +17,7 @@ pub enum ControlError {
     )]
     NotFinite { name: &'static str, value: f64 },
     #[error(
-        "{name} holds {value}; expected numbers between -{most} and {most} (SI units)",
+        "{name} holds {value}; the magnitude must be at most {most} (SI units)",
         value = exact(*value), most = exact(*most)
     )]
     TooLarge { name: &'static str, value: f64, most: f64 },

@@ -11,7 +11,7 @@ pub enum ModelError {
     #[error("link '{link}' has a mass of {mass} kg; it must be positive", mass = short(*mass))]
     MassNotPositive { link: String, mass: f64 },
     #[error(
-        "the inertia of link '{link}' is not positive definite; its principal moments are {moments} kg m2, but \
+        "the inertia of link '{link}' is indefinite: its principal moments are {moments} kg m2, but \
          none may be negative; correct its entries, such as the signs of the products of inertia",
         moments = list(moments)
     )]

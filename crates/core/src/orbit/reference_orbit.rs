@@ -24,7 +24,7 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
     fn state(&self, t: f64) -> Result<OrbitState, OrbitError>;
 
     /// Returns the states at two instants, s, bit-identical to those of [`Orbit::state`]; `None` if the orbit
-    /// cannot compute both in little more time than one, or if one of them is an error.
+    /// cannot compute both in little more time than one, or if [`Orbit::state`] returns an error for one.
     fn two_states(&self, _: [f64; 2]) -> Option<[OrbitState; 2]> {
         None
     }

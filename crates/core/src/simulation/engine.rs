@@ -5,8 +5,8 @@ use crate::environment::BodyIndex;
 use crate::model::Model;
 use crate::spatial::{Mat3, Vec3};
 
-/// External physics engine that moves the systems. Controllers, schedule, events, trace and certificate are
-/// the same as in a run with the native engine.
+/// External physics engine that computes the motion of the systems. Controllers, schedule, events, trace and
+/// certificate work as with the native engine.
 pub trait Engine: Send {
     /// Advances all systems by one step. Writes to `output` the state at the end of the step, the
     /// acceleration at its start, and the impulse and work during the step. The output must depend only on

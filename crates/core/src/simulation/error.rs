@@ -82,8 +82,8 @@ pub enum SimulationError {
     )]
     StepTooSmall { time: f64, step: f64 },
     #[error(
-        "at t = {time} s, the motion is so fast that the tolerance requires steps of {step} s, although the controllers act \
-         every {period} s; reduce gains or the control period, or end controls that cannot reach their references",
+        "at t = {time} s, the motion is so fast that the tolerance requires steps of {step} s, far shorter than the control \
+         period of {period} s; reduce gains or the control period, or end controls that cannot reach their references",
         time = short(*time), step = short(*step), period = short(*period)
     )]
     StepsTooShort { time: f64, step: f64, period: f64 },

@@ -73,7 +73,8 @@ pub(super) struct RunState<'a, S> {
     /// Time before which rows are recorded, s; infinity, except while [`RunState::peek`] computes trial
     /// steps.
     pub(super) records_before: f64,
-    /// Buffers for the state and the stages of rows that are not at the start of a step.
+    /// Buffers for a state and its stages that are not those of the step: for rows within a step or before a
+    /// jump, and for the measurement of the accuracy.
     pub(super) row_buffers: (State<S>, Stages<S>),
     /// States of the trees in the last row, if systems share trees.
     pub(super) row_states: Vec<TreeState<S>>,

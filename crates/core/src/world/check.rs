@@ -129,7 +129,7 @@ fn check_seat(event: &Event, seat: &Seat) -> Result<(), WorldError> {
         Err(WorldError::Number { event: event.name.clone(), what, value, unit, expected })
     };
     if TimeLaw::quintic(seat.duration).is_err() || seat.duration > LONGEST {
-        return wrong("the duration of the seat", seat.duration, "s", "from 1e-12 s to 1e9 s");
+        return wrong("the duration of the seating", seat.duration, "s", "between 1e-12 s and 1e9 s");
     }
     let RigidPose { rotation, position } = &seat.pose;
     if let Some(value) = position.iter().copied().find(|x| !x.is_finite()) {

@@ -77,9 +77,10 @@ def within(joint: Joint, value: float) -> float:
 
 
 def at_rest(joint: Joint) -> float:
-    """Return the position of a held joint, rad or m: zero, or the nearest one that :func:`within` permits.
+    """Return the position of a held joint, rad or m.
 
-    For a prismatic joint that cannot be at zero, the middle of its range is returned.
+    It is zero if :func:`within` permits it; otherwise it is the middle of the range for a prismatic joint,
+    and the nearest permitted position for other joints.
     """
     near = within(joint, 0.0)
     return near if near == 0.0 or joint.kind != "prismatic" else sum(_limits(joint)) / 2.0

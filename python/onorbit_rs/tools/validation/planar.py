@@ -17,10 +17,10 @@ Derivatives = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Body:
-    """Body with its mass, kg, moment of inertia about its mass centre, kg m², and motion in the base.
+    """Body with its mass, kg, moment of inertia about its centre of mass, kg m², and motion in base axes.
 
-    ``place`` is the position of the mass centre, m, with its first two derivatives; ``turn`` holds the first
-    two derivatives of the angle.
+    ``place`` is the position of the centre of mass, m, with its first two derivatives with respect to the
+    angle of the crank; ``turn`` holds the first two derivatives of the body's angle.
     """
 
     mass: float

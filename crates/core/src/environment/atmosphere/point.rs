@@ -21,8 +21,8 @@ pub struct AtmospherePoint<'a> {
 }
 
 impl<'a> AtmospherePoint<'a> {
-    /// Computes the point at `position` from the Earth's centre, axes of `I`, m, at simulation time `time`,
-    /// s.
+    /// Creates the point at `position` (from the Earth's centre, axes of `I`, m) and at simulation time
+    /// `time`, s.
     ///
     /// # Errors
     /// [`AtmosphereError::BelowSurface`] for a position inside the Earth; [`AtmosphereError::Earth`] if the

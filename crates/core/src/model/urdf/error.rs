@@ -98,7 +98,7 @@ pub enum UrdfProblem {
     )]
     Xacro { found: String },
     #[error(
-        "<{element}> has a prefix that URDF does not define and is ignored, so the robot is incomplete; remove the prefix"
+        "<{element}> is ignored because URDF does not define its prefix, so the robot is incomplete; remove the prefix"
     )]
     ForeignElement { element: String },
     #[error("the robot has no links; add at least one link")]
