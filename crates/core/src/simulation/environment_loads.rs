@@ -111,6 +111,11 @@ impl EnvironmentLoads {
         Ok(Some(Shift::between(local, &state, &reference, rate, model.mass())))
     }
 
+    /// Returns true if the run has a reference orbit.
+    pub(super) fn has_orbit(&self) -> bool {
+        self.cache.orbit().is_some()
+    }
+
     /// Returns the state of the current reference orbit at `t`, s, in which the velocity is the time
     /// derivative of the position; `None` without an orbit.
     pub(super) fn origin_state(&self, t: f64) -> Result<Option<OrbitState>, SimulationError> {
@@ -120,7 +125,7 @@ impl EnvironmentLoads {
 
     /// Returns the state of the current reference orbit at `t`, s; `None` without an orbit.
     pub(super) fn reference_state(&mut self, t: f64) -> Result<Option<OrbitState>, SimulationError> {
-        if self.cache.orbit().is_none() {
+        if !self.has_orbit() {
             return Ok(None);
         }
         Ok(self.cache.at(t, self.interval.1)?.state)

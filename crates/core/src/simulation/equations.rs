@@ -97,14 +97,20 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
             tree.rates(state, is_loaded, rate);
         }
         if self.trees.len() > 1 {
-            if has_contacts {
-                refer_to_common_center(&self.trees, state, rate);
-            } else if is_loaded {
-                rate.orbital = orbital_moment(&self.trees, state, rate);
-            }
+            self.refer_moments(state, rate);
         }
         if has_contacts {
             self.contacts.rates(&mut rate.contacts);
+        }
+    }
+
+    /// Refers the moments in `rate` to the common centre of mass of the trees.
+    #[inline(never)]
+    fn refer_moments(&self, state: &State<S>, rate: &mut Rate<S>) {
+        if !self.contacts.is_empty() {
+            refer_to_common_center(&self.trees, state, rate);
+        } else if self.loads.is_active() {
+            rate.orbital = orbital_moment(&self.trees, state, rate);
         }
     }
 

@@ -222,6 +222,9 @@ impl<S: Scalar> RunState<'_, S> {
     /// reference orbit.
     pub(super) fn rereference_if_far(&mut self, t: f64) -> Result<(), SimulationError> {
         let EquationsOfMotion { trees, loads, .. } = &mut self.equations;
+        if !loads.has_orbit() {
+            return Ok(());
+        }
         for (number, (tree, state)) in trees.iter_mut().zip(&mut self.state.trees).enumerate() {
             if Vec3::from_slice(&state.q).norm().value() > self.rereference_beyond {
                 tree.rereference(loads, t, state)?;

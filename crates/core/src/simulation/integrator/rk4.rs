@@ -5,7 +5,7 @@ use crate::simulation::equations::EquationsOfMotion;
 use crate::simulation::error::SimulationError;
 use crate::simulation::external_loads::ExternalLoads;
 use crate::simulation::state::{Rate, State};
-use crate::simulation::tree_state::TreeState;
+use crate::simulation::tree_state::{TreeRate, TreeState};
 use crate::spatial::{Real, Vec3, dexp_inv};
 
 /// Weights `b` of the four stages.
@@ -39,6 +39,17 @@ impl<S: Real> BaseStages<S> {
     pub(super) fn new() -> Self {
         Self { velocity: Vec3::zero(), accelerations: [Vec3::zero(); 3], theta: Vec3::zero() }
     }
+
+    /// Stores the acceleration at the stage with this index and, at the first stage, the velocity. The
+    /// accelerations of later stages have zero weight until they are stored, but must be finite.
+    #[inline(always)]
+    fn add_stage(&mut self, stage: usize, rate: &TreeRate<S>) {
+        if stage == 0 {
+            self.velocity = rate.base_velocity;
+            self.accelerations = [rate.base_acceleration; 3];
+        }
+        self.accelerations[stage] = rate.base_acceleration;
+    }
 }
 
 /// Computes a step: `y' = y ⊕ h (k₁ + 2 k₂ + 2 k₃ + k₄)/6`, with `k = dexp⁻¹(θ) ω` for the attitude, where
@@ -57,13 +68,10 @@ pub(super) fn rk4<S: Real>(
     let Stages { start, trial, rate, sum, .. } = stages;
     let (t, h) = (interval.0, interval.1 - interval.0);
     sum.clear();
-    for (base, rate) in bases.iter_mut().zip(&rate.trees) {
-        (base.velocity, base.accelerations) = (rate.base_velocity, [rate.base_acceleration; 3]);
-    }
     for (stage, c) in NODES.into_iter().enumerate() {
         add_stage(stage, bases, trial, rate, sum);
         for (base, rate) in bases.iter_mut().zip(&rate.trees) {
-            base.accelerations[stage] = rate.base_acceleration;
+            base.add_stage(stage, rate);
         }
         move_states(bases, NYSTROM[stage], (c, h), (start, rate), trial);
         let instant = if c == 1.0 { interval.1 } else { t + c * h };
