@@ -290,7 +290,7 @@ fn extensions_are_recognized_by_prefix_not_by_namespace() {
     );
     let model = load(&both);
     assert_eq!(model.mass(), 2.0);
-    assert!(notes(&model)[0].contains(": <p:x> is ignored because URDF"), "{:?}", notes(&model));
+    assert!(notes(&model)[0].contains(": <p:x> has a prefix that URDF"), "{:?}", notes(&model));
     assert_eq!(notes(&model).len(), 1);
 }
 
@@ -388,7 +388,7 @@ fn elements_that_are_not_urdf_are_ignored_and_named() {
     let model = load(&format!("<link name='a'>{INERTIAL}</link>\n{inside}"));
     let said = notes(&model);
     assert_eq!(said.len(), 2, "{said:?}");
-    assert!(said[0].contains(": <gazebo:x> is ignored because URDF"), "{said:?}");
+    assert!(said[0].contains(": <gazebo:x> has a prefix that URDF"), "{said:?}");
     assert!(
         said[0].ends_with("ignored (also: '<drake:joint>'); remove the prefix if it describes the robot"),
         "{said:?}"
