@@ -52,7 +52,7 @@ def test_a_misspelt_column_names_the_nearest(reach: oo.Run) -> None:
         oo.exceptions.InputError, match=r"'w'; names are, for example, q/position or acceleration"
     ):
         oo.plot(reach, "w")
-    with pytest.raises(oo.exceptions.InputError, match="each column must be a name, .* 3 is of type int"):
+    with pytest.raises(oo.exceptions.InputError, match=r"each column must be a name, .* 3 is of type int"):
         oo.plot(reach, 3)  # type: ignore[arg-type]
     with pytest.raises(oo.exceptions.InputError, match="source is of type int"):
         oo.plot(3)  # type: ignore[arg-type]
