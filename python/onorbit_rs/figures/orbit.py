@@ -15,6 +15,7 @@ from onorbit_rs.figures.style import (
     COLORS,
     OBTAINED,
     PAGE,
+    SMALL,
     XYZ_COLORS,
     clock,
     hide_rounding,
@@ -85,7 +86,9 @@ def _draw_path(figure: Figure, position_km: Floats, is_earth: bool) -> None:
     hidden = _is_behind(path, axes.elev, axes.azim, radius)
     axes.plot(*np.where(hidden[:, None], np.nan, path).T, color=OBTAINED, linewidth=1.4, zorder=3)
     axes.plot(*path.T, color=OBTAINED, linewidth=0.6, linestyle=":", zorder=2)
-    axes.scatter(*path[0], color=OBTAINED, s=16, depthshade=False, zorder=4)
+    face = "none" if hidden[0] else OBTAINED
+    axes.scatter(*path[0], edgecolor=OBTAINED, facecolor=face, s=16, depthshade=False, zorder=4)
+    axes.text(*path[0], "  start", color=OBTAINED, fontsize=SMALL, zorder=4)
     everything = np.vstack([sphere.reshape(3, -1).T, path])
     fit(axes, everything, room=(1.38, 1.5), least=0.4)
     label(axes, "km", pad=0.0)
