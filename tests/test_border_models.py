@@ -38,7 +38,7 @@ BAD: dict[str, Bad] = {
     "inertia indefinite": Bad(
         lambda: oo.Model.rigid_body(1.0, np.diag([1, -1, 1])),
         "ModelError",
-        ("base", "-1", "positive definite"),
+        ("base", "-1", "indefinite"),
         {"link": "base"},
     ),
     "inertia not symmetric": Bad(

@@ -54,7 +54,7 @@ def located(scenario: Document, *at: str | int) -> Iterator[None]:
 
 
 def spot_of(error: OnOrbitError) -> Spot:
-    """Return where in a scenario the cause of an error is; unknown parts are None."""
+    """Return the entry of a scenario that caused an error; unknown fields have the value None."""
     if isinstance(error, ScenarioError):
         return Spot(error.file, error.path, error.line)
     spot: Spot = getattr(error, "located", None) or Spot(None, None, None)
