@@ -210,7 +210,7 @@ EXPECTED = {
     "two_fixed_children_of_massless_root": LOADS,
     "two_joints_between_two_links": physics("is the child of two joints, 'shoulder' and 'spare'"),
     "two_parents": physics("is the child of two joints, 'wrist' and 'strut'"),
-    "two_roots": malformed("2 links are not children of joints: 'base', 'tip'"),
+    "two_roots": malformed("2 links are not the child of any joint: 'base', 'tip'"),
     "two_visuals": LOADS,
     "undeclared_prefix": warns("<sensor:camera>"),
     "unknown_elements": warns("<author> is not an element of URDF"),

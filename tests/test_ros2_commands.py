@@ -150,7 +150,7 @@ REFUSED = [
      {"joint_names": ARM, "points": [point(0.2, positions=HERE), point(0.1, positions=HERE)]}, "times"),
     (PATH, TRAJECTORY, PAST | {"joint_names": ARM, "points": [point(0.1, positions=HERE)]}, "ends"),
     ("/joint_commands", STATE, {"name": ["knee"], "position": [0.0]}, "no external control drives knee"),
-    ("/joint_commands", STATE, {"name": ARM}, "position, velocity and effort of the message are empty"),
+    ("/joint_commands", STATE, {"name": ARM}, "'velocity' and 'effort' of the message are all empty"),
     ("/joint_commands", STATE, {}, "the field 'name' of the message is empty"),
     ("/joint_commands", STATE, {"name": ARM[:2], "effort": [0.0, 0.0]}, "joint of the control once: "),
     ("/joint_commands", STATE, {"name": [ARM[0], *ARM[:3]], "effort": HERE}, "joint of the control once: "),

@@ -129,28 +129,35 @@ impl PyStepper {
 
     /// Send a command to the joints of an :class:`External` controller.
     ///
-    /// The command takes effect at the next update of the controllers, or now if one is due, and is held.
+    /// The command takes effect at the next update of the controllers, or now if one is due. It is held until
+    /// the next command, or until the timeout of the controller. At least one of ``position``, ``velocity``
+    /// and ``effort`` must be given.
     ///
     /// Parameters
     /// ----------
     /// control : str
     ///     Name of the control, a key of :attr:`external`; ``control`` for a single controller of all joints.
     /// position : (k,) array, optional
-    ///     Positions of the ``k`` joints, rad or m. Without ``velocity``, the joints rest at these positions.
+    ///     Positions of the ``k`` joints, rad or m; requires ``kp`` above zero. Without ``velocity``, the
+    ///     joints rest at these positions.
     /// velocity : (k,) array, optional
-    ///     Velocities, rad/s or m/s. Without ``position``, there is no position error.
+    ///     Velocities, rad/s or m/s; requires ``kd`` above zero. Without ``position``, there is no position
+    ///     error.
     /// effort : (k,) array, optional
-    ///     Torques, N m (N for a prismatic joint), which are added to those of position and velocity.
+    ///     Torques, N m (N for a prismatic joint), which are added to those computed from position and
+    ///     velocity; without both, they are the torques of the joints.
     /// acceleration : (k,) array, optional
-    ///     Accelerations, rad/s² or m/s², which are added to those computed from position and velocity.
+    ///     Accelerations, rad/s² or m/s², which are added to those computed from position and velocity;
+    ///     requires one of these.
     /// check_only : bool
     ///     If True, the command is checked but not sent.
     ///
     /// Raises
     /// ------
     /// ControlError, ShapeError, InputError
-    ///     If there is no such :class:`External` control or the control has ended, if a required gain is
-    ///     zero, or if an array is missing, has the wrong length or is not finite; the run is unchanged.
+    ///     If there is no such :class:`External` control or the control has ended, if a gain that the command
+    ///     requires is zero, if the command lacks a required array, or if an array has the wrong length or is
+    ///     not finite; the run is unchanged.
     #[pyo3(signature = (control, *, position=None, velocity=None, effort=None, acceleration=None, check_only=false))]
     fn send(
         &self,

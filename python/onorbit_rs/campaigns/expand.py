@@ -190,8 +190,8 @@ class Expander:
         if change.how != "add":
             raise self.error(
                 path,
-                f"{_without_choice(change)} does not apply to an attitude; use 'add', with an angle about "
-                "each body axis, or 'set' with 'choice'",
+                f"{_without_choice(change)} does not apply to an attitude; use 'add' with a distribution of "
+                "the angle about each body axis, or 'set' with 'choice'",
             )
         distribution = self._numeric(path, change)
         for amount_ in distribution.amounts:

@@ -91,7 +91,7 @@ def _figures(
 
 
 def print_comparison(compared: Comparison | WorldComparison) -> None:
-    """Print tables of the differences and the time at which the runs diverge."""
+    """Print tables of the differences, and whether the runs agree or at what time they diverge."""
     from onorbit_rs.cli.console import new_console, text
     from onorbit_rs.tools.comparison import Comparison
     from onorbit_rs.tools.comparison.text import rows_of, rows_of_world

@@ -19,10 +19,11 @@ NEAR = 2e-3
 
 
 def fitted(pieces: list[Floats], vertices: Floats, triangles: NDArray[np.int32]) -> list[Floats]:
-    """Return the pieces after moving corners that are closer to the mesh than :data:`NEAR` onto it.
+    """Return the pieces after moving each corner that nearly lies on the mesh onto the mesh.
 
-    A corner is moved to the nearest vertex or, if no vertex is that close, to the nearest edge, and otherwise
-    to the nearest face.
+    A corner is moved if its distance from the mesh is at most :data:`NEAR` times the diagonal of the mesh's
+    bounding box: to the nearest vertex within this distance or, if there is none, to the nearest point of an
+    edge, and otherwise of a face.
     """
     near = NEAR * float(np.linalg.norm(np.ptp(vertices, axis=0)))
     corners = vertices[triangles]  # (t, 3, 3)

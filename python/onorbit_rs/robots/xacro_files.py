@@ -143,7 +143,9 @@ def _checked(raw: bytes, name: str) -> str:
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise ValueError(f"{name!r} is not UTF-8 text (at byte {error.start}); save it as UTF-8") from None
+        raise ValueError(
+            f"{name!r} is not UTF-8 text (byte {error.start} is invalid); save it as UTF-8"
+        ) from None
     if not text.strip():
         raise ValueError(f"the file {name!r} is empty; write its content, or remove its include")
     if "<!DOCTYPE" in text or "<!ENTITY" in text:

@@ -128,8 +128,8 @@ def _joint_commands(system: str, controls: Mapping[str, list[str]]) -> Callable[
                     entry[field_name] = [numbers[i] for i in places]
             if len(entry) == 2:
                 raise RefusedError(
-                    "position, velocity and effort of the message are empty; fill at least one of them, with "
-                    "one value per joint"
+                    "the fields 'position', 'velocity' and 'effort' of the message are all empty; fill at "
+                    "least one of them, with one value per joint"
                 )
             entries.append(entry)
         if not entries:

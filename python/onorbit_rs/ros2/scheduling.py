@@ -1,4 +1,4 @@
-"""Garbage collection and priority of a node in real time."""
+"""Garbage collection and thread priority of a node that runs in real time."""
 
 from __future__ import annotations
 

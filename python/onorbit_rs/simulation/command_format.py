@@ -133,7 +133,7 @@ def read_commands(file: str | os.PathLike[str]) -> list[Command]:
         text = content.decode()
     except UnicodeDecodeError as error:
         raise invalid(
-            str(path), f"the file is not UTF-8 text (at byte {error.start}); save it as UTF-8"
+            str(path), f"the file is not UTF-8 text (byte {error.start} is invalid); save it as UTF-8"
         ) from None
     return parse_commands(text, str(path))
 

@@ -48,8 +48,8 @@ impl Latch {
         values.iter().zip(bounds).map(|(value, bound)| 1.0 - value / bound).fold(f64::INFINITY, f64::min)
     }
 
-    /// Returns true if the conditions hold within the tolerance for rounding; `inside` is a value of
-    /// [`Latch::inside`].
+    /// Returns true if the bounds of the envelope are met within the tolerance for rounding; required contacts
+    /// are not checked. `inside` is a value of [`Latch::inside`].
     pub(super) fn holds(inside: f64) -> bool {
         inside >= -ROUNDING
     }

@@ -267,7 +267,8 @@ impl PySimulation {
         copies(py, &self.given.contacts)
     }
 
-    /// Controllers as given, laws or :class:`Control`: a list for each system, by the name of the system.
+    /// Controllers of each system, as given: a dict from the name of a system to the list of its laws, objects
+    /// with ``update`` or :class:`Control` objects; empty for a system without controllers.
     #[getter]
     fn controllers<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let all = PyDict::new(py);

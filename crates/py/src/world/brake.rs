@@ -129,7 +129,7 @@ pub(super) fn brake_at(
     match known.iter().position(|name| name == brake) {
         Some(brake) => Ok(BrakeIndex { system, brake }),
         None if known.is_empty() => Err(wrong(&format!(
-            "the system '{name}' has no brakes; give the brake to 'actuators' of the system"
+            "the system '{name}' has no brakes; add the brake to the 'actuators' of this system"
         ))),
         None => {
             let known = match &known[..] {

@@ -56,8 +56,9 @@ def compare(
     allowed = finite_float(tolerance)
     if allowed is None or allowed <= 0.0:
         raise InputError(
-            f"tolerance is {tolerance!r}; it must be positive and finite", name="tolerance", got=tolerance
-        )
+            f"tolerance is {tolerance!r}; it must be a positive, finite number",
+            name="tolerance", got=tolerance,
+        )  # fmt: skip
     first = recorded(a)
     second = on_the_other_engine(first) if b is None else recorded(b)
     settings = differing_settings(first.scenario, second.scenario)

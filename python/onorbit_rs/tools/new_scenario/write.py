@@ -106,8 +106,8 @@ def _first_passing(model: Model, arm: Arm | None, plan: Plan) -> Plan:
     if arm is None:
         held = other = ""
     raise ScenarioError(
-        f"every trial run of {plan.name} failed{held}; check inertias, damping and limits with "
-        f"'onorbit info', change the file{other}; reasons: {', '.join(trials.failures())}",
+        f"every trial run of {plan.name} failed{held}; check the inertias, damping and limits with "
+        f"'onorbit info' and correct the file{other}; reasons: {', '.join(trials.failures())}",
         file=None, path=None, line=None,
     )  # fmt: skip
 

@@ -75,7 +75,8 @@ def select(only: Sequence[str] = ()) -> list[Case]:
     for word in only:
         if not any(_matches(case, word) for case in CASES):
             raise InputError(
-                f"no case matches {word!r}; give a part of the name of a case or a family: {families}",
+                f"no case matches {word!r}; give part of the name of a case, or one of the families: "
+                f"{families}",
                 name="only", got=word, expected=families,
             )  # fmt: skip
     return [case for case in CASES if not only or any(_matches(case, word) for word in only)]

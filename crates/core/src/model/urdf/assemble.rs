@@ -75,9 +75,9 @@ struct Tree {
     parent: Vec<usize>,
     /// Index of the child link of every joint.
     child: Vec<usize>,
-    /// Indices of the joints below every link.
+    /// For each link, the indices of the joints of which it is the parent link.
     joints_below: Vec<Vec<usize>>,
-    /// Index of the joint above every link; `None` for the root.
+    /// For each link, the index of the joint of which it is the child link; `None` for the root.
     joint_above: Vec<Option<usize>>,
 }
 

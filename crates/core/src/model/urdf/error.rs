@@ -137,7 +137,7 @@ pub enum UrdfProblem {
     #[error("{}", loop_text(.links))]
     Loop { links: Vec<String> },
     #[error(
-        "{} links are not children of joints: {}; connect all of them except the root by joints",
+        "{} links are not the child of any joint: {}; connect all of them except the root by joints",
         .roots.len(), list(.roots)
     )]
     ManyRoots { roots: Vec<String> },
