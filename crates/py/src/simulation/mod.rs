@@ -267,8 +267,7 @@ impl PySimulation {
         copies(py, &self.given.contacts)
     }
 
-    /// Controllers of each system, as given: a dict from the name of a system to the list of its laws, objects
-    /// with ``update`` or :class:`Control` objects; empty for a system without controllers.
+    /// Controllers as given: for the name of each system, a list of laws, Python objects or :class:`Control`.
     #[getter]
     fn controllers<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let all = PyDict::new(py);
