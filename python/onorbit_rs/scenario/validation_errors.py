@@ -32,13 +32,11 @@ def first_error(
 
     ``location`` converts the location of an entry in ``data`` to the location in the file.
     """
-    found: list[tuple[int, Location, str]] = []
+    errors = []
     for details in error.errors(include_url=False):
         at, message = _location_and_message(details, data)
         at = location(*at)
-        found.append((line_of(at, lines) or lines.get((), 0), at, message))
-    found.sort(key=lambda entry: entry[0])
-    errors = [scenario_error(text, file, line or None, dotted(at)) for line, at, text in found]
+        errors.append(scenario_error(message, file, line_of(at, lines) or lines.get(()), dotted(at)))
     return cast("ScenarioError", combined(errors))
 
 

@@ -245,7 +245,7 @@ impl Schedule {
         let last = self.duration.unwrap_or(now + LONGEST_INTERVAL * self.time_step);
         let grid = if self.cuts_at_grid { next_grid as f64 * self.time_step } else { last };
         let end = if self.is_beyond(grid, last) { last } else { grid };
-        let has_own_ticks = self.periods().any(|period| !(self.cuts_at_grid && period == self.time_step));
+        let has_own_ticks = self.periods().any(|period| !self.is_on_grid(period));
         let has_only_grid = next_event == self.events.len() && self.due.is_empty() && !has_own_ticks;
         let end = if has_only_grid { end } else { self.first_cut(next_event, end) };
         let is_event = next_event > events_before || self.due.iter().any(|&t| self.is_now(t));
@@ -253,13 +253,18 @@ impl Schedule {
         Some((interval, Cursor { now: end, next_grid, next_event }))
     }
 
+    /// Returns true if the ticks of a clock with this `period`, s, are cuts of the grid.
+    fn is_on_grid(&self, period: f64) -> bool {
+        self.cuts_at_grid && period == self.time_step
+    }
+
     /// Returns the first cut after the current one, s, if the next cut of the grid, or the end of the run, is
     /// at `end`, s, and the next event has the index `next_event`.
     #[inline(never)]
     fn first_cut(&self, next_event: usize, mut end: f64) -> f64 {
         let due = self.due.iter().copied().filter(|t| *t > self.at.now + self.tolerance());
-        let is_on_grid = |period: &f64| self.cuts_at_grid && *period == self.time_step;
-        let ticks = self.periods().filter(|period| !is_on_grid(period)).map(|period| self.next_tick(period));
+        let own = self.periods().filter(|&period| !self.is_on_grid(period));
+        let ticks = own.map(|period| self.next_tick(period));
         for cut in ticks.chain(self.events.get(next_event).copied()).chain(due) {
             if cut < end - self.tolerance() {
                 end = cut;
