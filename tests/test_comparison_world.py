@@ -98,7 +98,7 @@ def test_an_event_of_one_run_only_is_a_difference_unless_the_other_run_ended_bef
 def test_worlds_with_other_systems_and_single_robots_are_rejected(folder: Path) -> None:
     values = data()
     values["systems"]["other"] = {"robot": "humanoid_torso", "initial": {"position": [9, 0, 0]}}
-    with pytest.raises(CompareError, match=r"chaser, target, but .* has the systems chaser, target, other"):
+    with pytest.raises(CompareError, match=r"differ: chaser, target in .*, and chaser, target, other in"):
         oo.compare(folder, values)
     alone = {"robot": "humanoid_torso", "simulation": {"duration": 0.1}}
     for pair in ((folder, alone), (alone, folder)):

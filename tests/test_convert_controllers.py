@@ -151,6 +151,6 @@ def test_the_command_writes_external_controllers(tmp_path: Path) -> None:
         r'kind: "external" +# .*: type: effort_controllers/JointGroupEffortController', done.stdout
     )
     assert (
-        "PID gains (N m per error) do not apply to computed torque, which uses kp 100 1/s², kd 20 1/s"
+        "PID gains do not apply to computed torque, whose gains are kp 100 1/s², kd 20 1/s"
         in done.stderr
     )

@@ -271,7 +271,7 @@ def test_an_open_or_missing_mesh_has_no_pieces(tmp_path: Path) -> None:
         lambda: oo.Shape.mesh(file, pieces=8),
         lambda: link_with(file).with_convex_pieces("body", 8),
     ):
-        with pytest.raises(ModelError, match=r"is open \(3 edges .* no inside .* omit 'pieces'"):
+        with pytest.raises(ModelError, match=r"oriented at 3 edges, .* no inside .* omit 'pieces'"):
             attempt()
     with pytest.raises(ModelError, match=r"absent\.obj"):
         oo.Shape.mesh(tmp_path / "absent.obj", pieces=8)

@@ -175,7 +175,7 @@ def test_a_damaged_summary_raises_a_typed_error(tmp_path: Path, spoilt: bytes) -
 )
 def test_an_invalid_summary_is_rejected_with_a_fix(tmp_path: Path, spoilt: str) -> None:
     (tmp_path / "summary.json").write_text(spoilt)
-    with pytest.raises(ReadError, match=r"cannot read .*: .*; repeat the run with onorbit run .* --force"):
+    with pytest.raises(ReadError, match=r"cannot read .*: .*; repeat the run .* onorbit run .* --out DIR"):
         read_summary(listed(tmp_path))
 
 

@@ -141,8 +141,8 @@ PAST = {"header": {"stamp": {"sec": 0, "nanosec": 1}}}
 PATH = "/arm/joint_trajectory"
 REFUSED = [
     ("/arm/commands", FLOATS, {"data": [0.1]}, "'data' has length 1; the required length is 4, one number"),
-    ("/arm/commands", FLOATS, {"data": [0.0, NAN, 0.0, 0.0]}, f"data of joint {ARM[1]} is nan; it must be"),
-    ("/arm/commands", FLOATS, {"data": [0.0, 0.0, 0.0, INF]}, f"data of joint {ARM[3]} is inf; it must be"),
+    ("/arm/commands", FLOATS, {"data": [0.0, NAN, 0.0, 0.0]}, f"joint {ARM[1]} in 'data' is nan; it must be"),
+    ("/arm/commands", FLOATS, {"data": [0.0, 0.0, 0.0, INF]}, f"joint {ARM[3]} in 'data' is inf; it must be"),
     (PATH, TRAJECTORY, {"joint_names": [*ARM[:3], "elbow"], "points": [point(1.0)]}, "elbow; it must"),
     (PATH, TRAJECTORY, {"joint_names": ARM}, "the trajectory has no points"),
     (PATH, TRAJECTORY, {"joint_names": ARM, "points": [point(1.0)]}, "'positions' has length 0; the"),

@@ -235,13 +235,13 @@ def test_systems_have_prefixes_and_share_one_tree() -> None:
 def test_names_that_ros_does_not_allow_are_mapped_and_named() -> None:
     with pytest.warns(
         UserWarning,
-        match=r"these links are renamed there: 'a-b' → 'a_b', 'a b' → 'a_b_2', '1st' → 'n1st'",
+        match=r"renamed links: 'a-b' → 'a_b', 'a b' → 'a_b_2', '1st' → 'n1st'",
     ):
         found = ros_names(["a-b", "a b", "1st", "ok"], "link")
     assert found == {"a-b": "a_b", "a b": "a_b_2", "1st": "n1st", "ok": "ok"}
     with pytest.warns(UserWarning):
         assert ros_names(["é", "__", "x/y/"], "link") == {"é": "x", "__": "x_2", "x/y/": "x_y"}
-    with pytest.warns(UserWarning, match="these links are renamed there: 'a-b' → 'a_b_2'$"):
+    with pytest.warns(UserWarning, match="renamed links: 'a-b' → 'a_b_2'$"):
         assert ros_names(["a-b", "a_b"], "link") == {"a-b": "a_b_2", "a_b": "a_b"}
     assert ros_names(["tool", "tool_2"], "link") == {"tool": "tool", "tool_2": "tool_2"}
 

@@ -49,8 +49,8 @@ def test_every_check_of_the_certificate_applies_and_passes(bundled: oo.Run) -> N
 
 MISSES = {
     "docking_misses": "event 'docked' did not happen before the end of the run; its latch was not met: the "
-    "smallest distance of the frames was 0.0212 m, at an angle of 0.0417 rad, where 'within' permits 0.01 m "
-    "and 0.14 rad; correct the approach, or the conditions of the latch",
+    "smallest distance between the frames was 0.0212 m, at an angle of 0.0417 rad, where 'within' permits "
+    "0.01 m and 0.14 rad; correct the approach, or the conditions of the latch",
     "hand_retreats": "event 'capture' did not happen before the end of the run; check its condition 'when'",
 }
 """The warning of each bundled world whose event does not happen on purpose."""

@@ -110,7 +110,7 @@ class OnOrbitError(_Fields, Exception):
 
 
 class InputError(OnOrbitError, ValueError):
-    """Invalid value: NaN, infinite, out of range, or a quaternion without unit norm."""
+    """Invalid value, such as NaN, infinity, a number out of range, or a quaternion without unit norm."""
 
     name: Any = None
     got: Any = None
@@ -142,7 +142,10 @@ class ModelError(OnOrbitError, ValueError):
 
 
 class FrameError(OnOrbitError, KeyError):
-    """Unknown, missing or unsuitable name of a frame, link, body or joint; ``known`` has the valid names."""
+    """Unknown, missing or unsuitable name of a frame, link, body or joint.
+
+    ``known`` has the valid names, or is None.
+    """
 
     name: Any = None
     kind: Any = None

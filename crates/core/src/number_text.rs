@@ -1,6 +1,6 @@
 //! Formatting of numbers in messages: short texts without rounding noise.
 
-/// Largest number of significant digits in a message, except that the integer part of a number below
+/// Largest number of significant digits that [`short`] prints, except that the integer part of a number below
 /// [`LARGE`] is printed in full.
 const DIGITS: usize = 6;
 /// Magnitude from which numbers are printed with an exponent, because the integer part would be too long to

@@ -59,7 +59,7 @@ impl SharedRun {
             Ok(runs) => Ok(runs),
             Err(TryLockError::Poisoned(poisoned)) => Ok(poisoned.into_inner()),
             Err(TryLockError::WouldBlock) => {
-                let message = "this simulation is already being advanced, by another thread or by an \
+                let message = "this simulation is already in use by another thread or by an \
                                enclosing call; use a second Simulation";
                 Err(plain(py, "SimulationError", message))
             }

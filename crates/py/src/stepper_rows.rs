@@ -75,8 +75,8 @@ impl PyStepper {
     /// Delete all recorded rows but the first and the last ones, which limits the memory of a long run.
     ///
     /// The motion does not change. A later checkpoint can be resumed only together with the deleted rows. If
-    /// every step is recorded and not ``checked``, the certificate omits the checks that compare successive
-    /// steps.
+    /// every step is recorded and ``checked`` is False, the certificate omits the checks that compare
+    /// successive steps.
     ///
     /// Parameters
     /// ----------

@@ -74,7 +74,7 @@ macro_rules! getters {
             )+
 
             /// Return the names of the columns that the run recorded, except ``tracking``, ``wrenches``,
-            /// ``contacts`` and ``loops``.
+            /// ``contacts``, ``loops`` and ``rereferenced``.
             ///
             /// Returns
             /// -------
@@ -99,7 +99,7 @@ macro_rules! getters {
             /// list of tuple
             ///     ``(name, value, gate, passed)`` for each check that applies to the run; ``gate`` is the
             ///     largest accepted value. Values are relative to nonzero scales and dimensionless, except
-            ///     angles in rad, whose names end in ``_rad``.
+            ///     angles in rad, whose names end in ``_rad``, and ``loop_opening``, in m or rad.
             fn certificate(this: &Bound<'_, Self>) -> PyResult<Vec<(&'static str, f64, f64, bool)>> {
                 let of = |this: &PyTrace| certify(&this.model, &this.trace).checks();
                 let (own, shared) = (this.get(), this.clone().unbind());

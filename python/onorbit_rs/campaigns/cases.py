@@ -86,7 +86,7 @@ def run_case(plan: Plan, case: int, check_stop: Callable[[], None] = lambda: Non
 
 
 def keep_case(plan: Plan, case: int, folder: Path) -> Outcome:
-    """Run a case in ``folder`` as an ordinary run; return its outcome, of which only the error is filled in.
+    """Run a case in ``folder`` as an ordinary run; return its outcome without values and numbers.
 
     Raises
     ------
@@ -103,7 +103,7 @@ def keep_case(plan: Plan, case: int, folder: Path) -> Outcome:
 
 
 def _error_of_run(data: dict[str, Any], folder: Path) -> Exception | None:
-    """Run a scenario in a folder, whose results are replaced; return the error with which it ends."""
+    """Run a scenario in a folder, whose results are replaced; return the error that ends the run, or None."""
     try:
         run(check(data, None, {}), folder, force=True, quiet=True)
     except OutputFolderError:

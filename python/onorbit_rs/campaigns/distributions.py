@@ -169,7 +169,7 @@ class Change(Part):
     scale: Distribution | None = None
     """Distribution of the factor by which the nominal value is multiplied."""
     vector: Literal["components", "direction"] = "components"
-    """How a vector is drawn: ``components`` draws each component on its own, in the axes of the entry.
+    """How a vector is drawn: ``components`` draws each component independently, in the axes of the entry.
     ``direction`` draws a magnitude and a uniformly distributed direction for ``set`` and ``add``, and one
     factor for the whole vector for ``scale``."""
 

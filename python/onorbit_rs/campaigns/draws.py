@@ -42,9 +42,9 @@ def unit_draw(sampling: Sampling, seed: int, cases: int, case: int, path: str, d
     case : int
         Number of the case, from 0.
     path : str
-        Name of the dispersed value.
+        Name of the random number.
     dimension : int
-        Position of the dispersed value in the campaign; used by ``sobol`` only.
+        Index of the random number among those of a case, from 0; used by ``sobol`` only.
 
     Returns
     -------
@@ -103,7 +103,7 @@ def check_sampling(sampling: Sampling, dimensions: int) -> None:
     """Raise InputError if ``sobol`` is requested, but SciPy is missing or supports fewer dimensions."""
     if sampling == "sobol" and dimensions > (most := int(_qmc().Sobol.MAXDIM)):
         raise InputError(
-            f"{dimensions} values are dispersed, but Sobol sequences have at most {most} dimensions; "
+            f"a case has {dimensions} random numbers, but Sobol sequences have at most {most} dimensions; "
             "disperse fewer values, or use latin_hypercube",
             name="sampling", got=dimensions, expected=f"<= {most}",
         )  # fmt: skip

@@ -67,9 +67,9 @@ def _values(mass: float, com: Floats, inertia: Floats) -> LinkValues:
 def _share(model: Model, body: Body, link: str) -> LinkValues:
     """Return mass, centre of mass and inertia of a link that shares its body with other links.
 
-    With the reference values `m₀ = 1 kg`, `c₀ = 0` and `I₀ = 1` of the link in place of `m`, `c` and `I`, the
-    body changes its mass by `m₀ − m`, its first moment of mass by `R (m₀ c₀ − m c) + (m₀ − m) p` and its
-    second moment about the body's origin correspondingly. `R` and `p` are the pose of the link in the body.
+    If the values `m`, `c` and `I` of the link are replaced by `m₀ = 1 kg`, `c₀ = 0` and `I₀ = 1 kg m²`, the
+    mass of the body changes by `m₀ − m`, its first moment of mass by `R (m₀ c₀ − m c) + (m₀ − m) p`, and its
+    inertia about the body's origin correspondingly. `R` and `p` are the pose of the link in the body.
     """
     poses = {frame.name: np.array(frame.pose) for frame in model.frames}
     pose = poses.get(link, np.eye(4))

@@ -27,7 +27,7 @@ def numbers_of(summary: Mapping[str, Any]) -> dict[str, Any]:
 
     Entries of a system begin with ``systems.NAME.``, those of checks, contacts and events with
     ``certificate.NAME.``, ``contacts.NAME.`` and ``events.NAME.``. Of events with the same name, the first
-    is used; ``events.NAME.count`` is their number. Touches and lift-offs are part of ``contacts``.
+    is used; ``events.NAME.count`` is their number. Touch-downs and lift-offs are left out.
     """
     found: dict[str, Any] = {}
     for key, value in summary.items():

@@ -237,7 +237,8 @@ class _Tasks:
         except module.KilledWorker as error:
             if self._board.give_back(cases):
                 return []
-            return [Outcome(cases[0], "failed", f"{_first(error)}, {MOST_DEATHS} times", {}, {})]
+            text = f"{MOST_DEATHS} tasks with this case lost their workers: {_first(error)}"
+            return [Outcome(cases[0], "failed", text, {}, {})]
         except (CampaignError, KeyboardInterrupt):
             raise
         except Exception as error:

@@ -78,7 +78,7 @@ class CampaignFolder:
                 return
             if not force:
                 what = (
-                    f"another campaign, {found['name']!r}, with another scenario, seed, variation or version"
+                    f"another campaign, {found['name']!r}, whose scenario, settings or version differ"
                     if "name" in found
                     else f"a campaign whose file {PARTS}/{IDENTITY} cannot be read"
                 )

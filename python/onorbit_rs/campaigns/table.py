@@ -46,7 +46,7 @@ OF_EVENTS = ("events.", "certificate.")
 def check_conditions(
     known: Sequence[str], conditions: dict[str, Condition], accepted: tuple[str, ...] = OF_EVENTS
 ) -> None:
-    """Raise InputError, with the nearest name, if a condition names no ``known`` column.
+    """Raise InputError, with a similar name if there is one, if a condition names no ``known`` column.
 
     Names that begin with one of ``accepted`` are not checked.
     """

@@ -138,7 +138,7 @@ def clearances(models: _core.Model | Models, trace: Any, watches: Sequence[Watch
     ------
     FrameError, InputError
         If a name or a pattern is unknown, two watches have the same name, no pair of links is left to
-        compare, or a zone is fixed to lvlh without an orbit.
+        compare, or a zone is fixed to lvlh without an orbit for which this frame is defined.
     """
     named: Models = {"": models} if isinstance(models, _core.Model) else models
     names = [watch.name for watch in watches]

@@ -125,7 +125,8 @@ def zone_poses(zone: KeepOut, models: Models, rows: Mapping[str, Floats], orbit:
         return carried[:, None]
     if orbit is None or not is_local_frame_defined(*orbit):
         message = (
-            f"{zone.name!r} is fixed to lvlh, which requires a reference orbit; add an orbit, or use 'world'"
+            f"{zone.name!r} is fixed to lvlh, which requires a reference orbit with a velocity that is "
+            "neither zero nor parallel to the position; add or correct the orbit, or use 'world'"
         )
         raise InputError(message, name="fixed_to", got="lvlh")
     turned = np.tile(np.eye(4), (count, 1, 1))

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def _patterns(links: str | Sequence[str], name: str) -> tuple[str, ...]:
-    """Return one or several patterns as a tuple; raise an InputError for no pattern or other types."""
+    """Return one or several patterns as a tuple; raise an InputError if there is none, or one is not text."""
     found = (links,) if isinstance(links, str) else tuple(links)
     if not found or not all(isinstance(link, str) for link in found):
         message = (

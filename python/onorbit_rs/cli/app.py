@@ -90,7 +90,10 @@ def onorbit(context: typer.Context, version: VersionOption = False) -> None:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Run a command and exit; errors are printed and give code 2 (Ctrl-C 130, SIGTERM 143, SIGHUP 129)."""
+    """Run a command and exit.
+
+    Errors are printed and give exit code 2. Ctrl-C gives 130, SIGTERM 143 and SIGHUP 129.
+    """
     escape_unencodable()
     try:
         with ending_signals(), warnings.catch_warnings(), _announcing_user_code():
@@ -125,7 +128,7 @@ def main(arguments: list[str] | None = None) -> None:
 
 @contextmanager
 def _announcing_user_code() -> Iterator[None]:
-    """Print the name of each Python file of a scenario before it is executed."""
+    """Print the name of each Python file or module of a scenario once, before it is executed in the block."""
     announced: set[str] = set()
 
     def announce(source: str) -> None:

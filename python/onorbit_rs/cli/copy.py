@@ -52,7 +52,8 @@ def _files_of(name: str) -> tuple[str, Path, list[Path]]:
     Raises
     ------
     NotFoundError
-        If neither a scenario nor a campaign has this name; the message suggests the nearest name.
+        If neither a scenario nor a campaign has this name; the message suggests a similar name, if there is
+        one.
     """
     from onorbit_rs import scenarios
     from onorbit_rs.campaigns.bundled import CAMPAIGNS

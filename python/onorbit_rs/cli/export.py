@@ -77,7 +77,7 @@ def _write_tables(
     if not wanted:
         if system is not None:
             raise InputError(
-                f"--system {system} applies to --csv, --parquet, --oem and --aem; add one of them",
+                f"--system {system} applies only to --csv, --parquet, --oem and --aem; add one of them",
                 name="system", got=system,
             )  # fmt: skip
         return []

@@ -25,7 +25,7 @@ RobotArgument = Annotated[
 ]
 FolderArgument = Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a run.")]
 OutOption = Annotated[Path | None, typer.Option("--out", "-o", metavar="DIR", help="Folder for results.")]
-ForceOption = Annotated[bool, typer.Option("--force", help="Replace an existing run in DIR.")]
+ForceOption = Annotated[bool, typer.Option("--force", help="Replace existing results in DIR.")]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON only.")]
 QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="Print no progress and no summary.")]
 FiguresOption = Annotated[bool, typer.Option("--figures/--no-figures", help="Write figures to DIR.")]

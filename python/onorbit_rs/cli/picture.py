@@ -23,7 +23,8 @@ class View:
     """Options of a picture, each None if it was not given.
 
     ``at`` is the time, s, ``size`` the width and height in pixels, ``eye`` the position of the camera and
-    ``look_at`` the point in the middle, m, both relative to the base. ``has_collisions`` is never None.
+    ``look_at`` the point in the middle, m, both relative to the base of the first robot. ``has_collisions``
+    is never None.
     """
 
     at: float | None
@@ -41,7 +42,7 @@ class View:
         Raises
         ------
         InputError
-            If a size or a point is malformed, or the camera is at the point at which it looks.
+            If a size or a point is malformed, or ``eye`` and ``look_at`` are the same point.
         """
         view = cls(at, _size(size), _point("eye", eye), _point("look_at", look_at), is_collision)
         if view.eye is not None and view.eye == view.look_at:

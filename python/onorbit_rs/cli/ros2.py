@@ -114,7 +114,8 @@ def ros2(
         print_text(_closing(report))
     if not report["certificate_passed"]:
         failed = ", ".join(name for name, _, _, passed in trace.certificate() if not passed)
-        fail(f"the certificate failed ({failed}); try a shorter time_step", 1)
+        fix = "try a shorter time_step, or a smaller tolerance with integrator: dormand_prince"
+        fail(f"the certificate failed ({failed}); {fix}", 1)
 
 
 def _greeting(node: Node) -> str:

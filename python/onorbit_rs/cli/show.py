@@ -30,11 +30,17 @@ def show(
         typer.Option(metavar="WIDTHxHEIGHT", help="Size of the picture, pixels; default: 1920x1080."),
     ] = None,
     eye: Annotated[
-        str | None, typer.Option(metavar="X,Y,Z", help="Position of the camera relative to the base, m.")
+        str | None,
+        typer.Option(
+            metavar="X,Y,Z", help="Position of the camera, relative to the base of the first robot, m."
+        ),
     ] = None,
     look_at: Annotated[
         str | None,
-        typer.Option(metavar="X,Y,Z", help="Point in the middle of the picture, relative to the base, m."),
+        typer.Option(
+            metavar="X,Y,Z",
+            help="Point in the middle of the picture, relative to the base of the first robot, m.",
+        ),
     ] = None,
     collision: Annotated[
         bool, typer.Option("--collision", help="Draw the collision shapes in the picture.")

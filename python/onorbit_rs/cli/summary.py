@@ -104,7 +104,7 @@ def _print_world(console: Console, summary: dict[str, Any], systems: dict[str, A
 
 
 def _print_events(console: Console, events: Sequence[dict[str, Any]]) -> None:
-    """Print a table of captures, releases and events of brakes."""
+    """Print a table of captures, releases and brake events."""
     if not events:
         return
     table = new_table("event", "kind", "time", "systems", "impulse", "energy lost")

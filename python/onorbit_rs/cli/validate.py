@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 
 OnlyOption = Annotated[
     list[str] | None,
-    typer.Option("--only", metavar="WORD", help="Cases whose family or name contains WORD; may be repeated."),
+    typer.Option(
+        "--only", metavar="WORD", help="Select cases whose family or name contains WORD; may be repeated."
+    ),
 ]
 ListOption = Annotated[
     bool, typer.Option("--list", help="List cases with sources and gates, without running them.")

@@ -30,7 +30,7 @@ class BundledFiles(NamedTuple):
         Raises
         ------
         NotFoundError
-            If there is no such file; the message suggests the nearest name.
+            If there is no such file; the message suggests a similar name, if there is one.
         """
         known = self.names()
         if name not in known:
@@ -45,7 +45,7 @@ class BundledFiles(NamedTuple):
         Raises
         ------
         NotFoundError
-            If there is no such file and no such name; the message suggests the nearest name.
+            If there is no such file and no such name; the message suggests a similar name, if there is one.
         """
         name, known = os.fspath(source), self.names()
         if not name:

@@ -52,7 +52,10 @@ def read_bounded(stream: BinaryIO, most: int) -> bytes:
 
 
 def open_to_change(file: Path) -> BinaryIO:
-    """Open a regular file for reading and writing, or create it if missing; raise OSError for a link."""
+    """Open a regular file for reading and writing, or create it if missing.
+
+    Raise OSError for a folder, a device, a symbolic link or a file with several hard links.
+    """
     descriptor = os.open(file, os.O_RDWR | os.O_CREAT | _NO_LINK | getattr(os, "O_NONBLOCK", 0), 0o666)
     try:
         found = os.fstat(descriptor)
@@ -139,7 +142,7 @@ def replacing(file: Path) -> Iterator[Path]:
     Raises
     ------
     OutputFolderError
-        If the file cannot be written, or is a link or another kind of file.
+        If the file cannot be written, or is a link, a folder, a pipe or a device.
     """
     with output_errors(file):
         if exists(file) and not is_regular(file):

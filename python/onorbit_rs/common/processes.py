@@ -32,7 +32,7 @@ def receive(stream: IO[bytes]) -> Any:
     Raises
     ------
     EOFError
-        If the process at the other end closed the pipe or ended, also in the middle of an object.
+        If the process at the other end closed the pipe or ended, even in the middle of an object.
     """
     try:
         return pickle.load(stream)

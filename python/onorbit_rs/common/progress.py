@@ -50,7 +50,10 @@ def progress_bar(name: str, duration_s: float, *, quiet: bool) -> Iterator[Progr
 
 @contextmanager
 def parts_bar(name: str, *, quiet: bool) -> Iterator[Callable[[str, float], None]]:
-    """Show a progress bar during the block, and yield a function that sets task and completed fraction."""
+    """Show a progress bar during the block, unless ``quiet``.
+
+    Yield a function that sets the name of the current task and the completed fraction.
+    """
     if quiet or sys.stderr is None:
         yield lambda part, done: None
         return
@@ -94,7 +97,10 @@ def _bar() -> Bar:
 
 @contextmanager
 def doing(name: str, *, quiet: bool) -> Iterator[Callable[[str], None]]:
-    """Show a status line during the block, and yield a function that sets the name of the current task."""
+    """Show a status line during the block, unless ``quiet``.
+
+    Yield a function that sets the name of the current task.
+    """
     if quiet or sys.stderr is None:
         yield lambda part: None
         return

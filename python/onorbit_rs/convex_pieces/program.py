@@ -14,7 +14,7 @@ import numpy as np
 
 
 def main() -> None:
-    """Divide the mesh and write its pieces; exit with an error if it has none."""
+    """Divide the mesh and write its pieces; exit with an error if CoACD finds none."""
     output = os.dup(1)
     os.dup2(2, 1)  # what the library prints goes to standard error
     coacd.set_log_level("off")

@@ -246,9 +246,9 @@ class Mujoco:
             systems = count(len(self._shares), "system", "systems")
             made = f"a world of {systems}" if self._is_world else "a single robot"
             raise EngineError(
-                f"this engine was created for {made} with {self._model.nq} coordinates and {len(self._dofs)} "
-                f"joint torques, but is used for a world with {len(q)} coordinates and {len(tau)} joint "
-                "torques; create Mujoco({name: model, ...}) with all systems in the order of the world",
+                f"this engine was created for {made} (coordinates: {self._model.nq}, joint torques: "
+                f"{len(self._dofs)}), but is used for a world (coordinates: {len(q)}, joint torques: "
+                f"{len(tau)}); create Mujoco({{name: model, ...}}) with all systems in the world's order",
                 name="engine", got="mujoco",
             )  # fmt: skip
         qpos, qvel, acceleration, done, first = self._advance(
@@ -325,7 +325,7 @@ class Mujoco:
         """Return ``[qvel, qacc, F, T, power, power dissipated in the joints]``, powers in W.
 
         `F` and `T` are the force of the environment, N, and its moment about the centre of mass, N m. In a
-        world, the values of all systems follow ``qacc``; see :func:`exchanged`. A state with NaN gives NaN.
+        world, the values of all systems follow ``qacc``; see :func:`exchanged`. A non-finite state gives NaN.
         """
         data = self._data
         if not (np.isfinite(qpos).all() and np.isfinite(qvel).all()):

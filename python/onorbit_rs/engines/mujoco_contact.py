@@ -93,7 +93,7 @@ def add_contacts(
 
 
 def _with_forces(contacts: Sequence[Contact]) -> list[Contact]:
-    """Return the contacts that have a normal force; raise EngineError for values of another type."""
+    """Return the contacts that have a normal force; raise EngineError for a wrong type or law."""
     wrong = (
         [one for one in contacts if not isinstance(one, Contact)]
         if isinstance(contacts, Sequence)

@@ -64,7 +64,10 @@ def mujoco_model(model: Model, *, time_step: float, enforce_limits: bool) -> Any
 
 
 def _time_constant(given: float | None, time_step: float) -> float:
-    """Return the time constant of welds, s, by default two time steps; raise EngineError if it is shorter."""
+    """Return the time constant of welds, s, by default two time steps.
+
+    Raises EngineError if the given one is not finite or shorter than two time steps.
+    """
     least = 2.0 * time_step
     if given is None:
         return least

@@ -53,5 +53,5 @@ def select_set(sets: Iterable[tuple[str, str, T]], satellite: str, where: str) -
 
 
 def _word(text: str) -> str:
-    """Return a name or number for comparison: in lower case, without outer spaces and leading zeros."""
+    """Return a name or number for comparison: in lower case, without surrounding spaces and leading zeros."""
     return text.strip().casefold().lstrip("0")

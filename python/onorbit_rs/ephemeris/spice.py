@@ -81,7 +81,8 @@ def _check_records(path: str | Path) -> None:
 def _chain(kernel: Any, name: str, path: str | Path) -> list[tuple[int, int]]:
     """Return the pairs of centre and target from a body to the barycentre of the solar system.
 
-    Raises EarthError if the kernel does not contain the body.
+    They end at an earlier centre if the kernel has no segment from there. Raises EarthError if the kernel
+    does not contain the body.
     """
     centres = {target: center for center, target in kernel.pairs}
     body = BODIES[name]
@@ -92,8 +93,8 @@ def _chain(kernel: Any, name: str, path: str | Path) -> list[tuple[int, int]]:
     if not chain:
         known = ", ".join(str(target) for target in sorted(centres))
         message = (
-            f"{path} does not contain the {name.title()} (body {BODIES[name]}); its bodies are "
-            f"{known or 'none'}; give a kernel of the Sun, the Moon and the Earth, such as de440s.bsp"
+            f"{path} does not contain the {name.title()} (body {BODIES[name]}; bodies in the kernel: "
+            f"{known or 'none'}); give a kernel of the Sun, the Moon and the Earth, such as de440s.bsp"
         )
         raise EarthError(message, name="ephemeris", got=str(path), expected=name)
     return chain

@@ -79,7 +79,7 @@ def contact_overview(trace: WorldTrace, events: Sequence[EventMark] = ()) -> Fig
 
 
 def _draw_touches(axes: Axes, row: int, touches: Sequence[Touch], number: int, scale: float) -> None:
-    """Draw the touches of a contact, and beside them their number and their total duration."""
+    """Draw the touches of a contact; beside them, print number and duration, or how many are drawn."""
     ranges = [(start / scale, (stop - start) / scale) for start, stop in touches]
     color = COLORS[row % len(COLORS)]
     axes.broken_barh(ranges, (row - 0.3, 0.6), facecolor=color, edgecolor=color, linewidth=1.0)

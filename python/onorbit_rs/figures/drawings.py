@@ -154,7 +154,7 @@ def _of_the_loops(trace: Trace) -> Iterator[Drawing]:
             continue
         about = (
             f"Loop {loop}: force on its second frame and moment about its point, in W, and the distance and "
-            "the angle by which it is open. Rounding errors are of the order of 1e-16."
+            "the angle by which it is open. Rounding errors are about 1e-16 m or rad."
         )
         yield Drawing(f"loop_{numbered_part(number, loop)}", about, partial(loop_history, trace, loop))
 

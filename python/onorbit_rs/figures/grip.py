@@ -31,8 +31,8 @@ class Grip:
         Time in which the commanded force would increase from zero to ``force``, s.
     fingers : tuple of tuple of str
         Names of the contacts of each finger; empty if they are not known.
-    pressures : dict
-        Normal forces of these contacts, (T,), N, by the name of the contact.
+    pressures : dict or None
+        Normal forces of these contacts, (T,), N, by the name of the contact; None if they are not known.
     """
 
     force: float
@@ -44,8 +44,8 @@ class Grip:
 def commanded_force(grip: Grip, time: Floats, actual: Floats) -> Floats:
     """Return the commanded force, (T,), N, while the control is active and all fingers touch; otherwise NaN.
 
-    It increases from the force of the first row in which this holds, as in the control law, which knows the
-    instant between two rows.
+    It increases from the actual force in the first row in which this holds; the control law uses the exact
+    instant, which may lie between two rows. If the fingers are unknown, it is the desired force in all rows.
 
     Parameters
     ----------

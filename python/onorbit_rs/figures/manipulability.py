@@ -31,8 +31,8 @@ _MOST_ROWS = 2_000
 def manipulability(trace: Trace, model: Model, tool: str, joints: Sequence[str] | None = None) -> Figure:
     """Draw Yoshikawa's measure `w = √det(J Jᵀ)` with the base free and fixed.
 
-    `J` is the generalized Jacobian `Jg` of the tool for a free base, and its Jacobian of the joints for a
-    fixed base.
+    For a free base, `J` is the generalized Jacobian `Jg` of the tool; for a fixed base, it is the tool's
+    Jacobian with respect to the joints.
 
     The upper panel, drawn for six joints or more, is for linear and angular velocity together, the lower
     panel for linear velocity; both in m³ if all joints are revolute. At zero the tool cannot move in some

@@ -70,8 +70,8 @@ def plot(source: Run | RecordedRun | Trace | WorldTrace, *columns: str) -> Figur
     Raises
     ------
     InputError
-        If a name matches no column (the message contains the most similar name), the columns have more
-        than 12 different units, or ``source`` has another type.
+        If a name is not text or matches no column (the message suggests names), the columns have more than
+        12 different units, or ``source`` has another type.
 
     Examples
     --------
@@ -170,7 +170,7 @@ def _of_trace(trace: Any, model: Model | None, system: str) -> list[Line]:
 
 
 def _model(source: Any, system: str | None) -> Model | None:
-    """Return the robot of a run or of one of its systems; None for a trace, or if its file is gone."""
+    """Return the robot of a run or of one of its systems; None for a trace or an unreadable robot."""
     try:
         found = getattr(source, "model" if system is None else "models", None)
     except OnOrbitError:

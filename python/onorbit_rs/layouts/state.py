@@ -97,7 +97,7 @@ def order_of(model: Model, names: Sequence[str] | None) -> NDArray[np.intp]:
     Raises
     ------
     FrameError
-        If the model has no joint of a given name; the message suggests the nearest name.
+        If the model has no joint of a given name; the message suggests a similar name, if there is one.
     InputError
         If joints of the model are missing or given twice.
     DtypeError
@@ -143,7 +143,7 @@ def names_in(joints: Any, attribute: str) -> bool:
 
 
 def no_floating_base(engine: str) -> InputError:
-    """Return the error for a model that has no free first joint, or joints with several rates."""
+    """Return the error for a model without a free first joint, or with other joints of several freedoms."""
     return InputError(
         f"the first joint of the {engine} model must be a free joint (floating base), and every other joint "
         "must have one degree of freedom; give such a model, or the list of joint names",

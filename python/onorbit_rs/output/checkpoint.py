@@ -55,7 +55,7 @@ class _Written(NamedTuple):
 
 
 class SavedCheckpoint(NamedTuple):
-    """A checkpoint read from a folder, and what its files contain of each column."""
+    """A checkpoint read from a folder, with the number, width and digest of the rows of each column."""
 
     checkpoint: Checkpoint
     written: dict[str, _Written]
@@ -101,7 +101,7 @@ class CheckpointWriter:
 
         Raises
         ------
-        OutputFolderError
+        OutputFolderError, CheckpointError
             If the rows cannot be written and ``must`` is True.
         OutputInUseError
             If another process has locked the folder.

@@ -78,7 +78,7 @@ def is_incomplete(summary: dict[str, Any]) -> bool:
 
 
 def advice(summary: dict[str, Any]) -> str:
-    """Return advice for a failed certificate; empty if the summary lacks the integrator's settings.
+    """Return advice for a failed certificate; empty if the summary contains no time step.
 
     A shorter step is suggested only if halving the step changes the motion, or if that was not evaluated.
     """

@@ -77,7 +77,7 @@ class OutputFolder:
         ------
         OutputNotEmptyError
             If ``force`` is False and the folder contains files, or if it contains edited figures, or files
-            that have names of results but were not written by a run.
+            with the names of results or in ``checkpoint`` that were not written by a run.
         OutputNotWritableError
             If the path is a file, or the folder cannot be created or written.
         OutputInUseError
@@ -117,7 +117,9 @@ class OutputFolder:
 
     @contextmanager
     def replacing(self) -> Iterator[Replacement]:
-        """Yield files that are replaced together after the block; if the block fails, the old files remain.
+        """Yield a group of files that are replaced together after the block.
+
+        If the block fails, the old files remain.
 
         The manifest is written first, so that a reader detects files that were not replaced yet.
         """

@@ -39,7 +39,10 @@ class Owner(NamedTuple):
     """Text that identifies the temporary files of the process by their names."""
 
     def __str__(self) -> str:
-        """Return ``process 12 on host (onorbit run …) since 2026-01-01 12:00:00``, if the owner is known."""
+        """Return ``process 12 on host (onorbit run …) since 2026-01-01 12:00:00 +0000``.
+
+        If the owner is unknown, return ``another process``.
+        """
         if not self.pid:
             return "another process"
         return printable(f"process {self.pid} on {self.host} ({self.command}) since {self.since}")

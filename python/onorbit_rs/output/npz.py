@@ -12,7 +12,7 @@ import numpy as np
 from onorbit_rs.common.blocks import ROWS, blocks
 
 LOCAL_HEADER, _ZIP64_FIELD = 30, 20
-"""Sizes of the header of a member without its name, and of its field with sizes of 64 bits, bytes."""
+"""Sizes of the local header of a member without its name, and of its ZIP64 field, bytes."""
 PADDING, _PADDING_ID = struct.Struct("<HH"), 0xD935
 """Header of a field of zeros between the header and the content of a member."""
 _LEVEL = 1

@@ -19,7 +19,10 @@ _CHUNK = 1 << 22
 _MAPPED = 1 << 24
 """Size of an array, bytes, above which it is mapped from a file."""
 _MAPPED_TRUSTED = 1 << 18
-"""The same size for a file that this process has written, whose checksums are not computed."""
+"""Size of an array, bytes, above which it is mapped from a file that this process has written.
+
+The checksums of such arrays are not computed.
+"""
 _MOST_EXPANDED = 1 << 28
 """Size of the compressed arrays in memory, bytes, above which all further arrays are mapped from files."""
 _MOST_RATIO = 1032
@@ -80,7 +83,9 @@ def _check_directory(members: list[zipfile.ZipInfo], size: int) -> None:
             )
         most = _MOST_RATIO * stored if _is_compressed(member) else stored
         if expanded > most or (not _is_compressed(member) and expanded < stored):
-            raise ValueError(f"{name} states {expanded} bytes, which {stored} bytes in the file cannot hold")
+            raise ValueError(
+                f"{name} states {expanded} bytes, which is impossible for its {stored} bytes in the file"
+            )
     total = sum(member.compress_size for member in members)
     if total > size:
         raise ValueError(f"its columns have {total} bytes in total, but the file has {size}")

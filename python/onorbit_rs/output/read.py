@@ -43,7 +43,7 @@ class SavedRun:
     """Files of one run in a folder; each is checked against the manifest, which is read at construction."""
 
     def __init__(self, folder: Path) -> None:
-        """Read the manifest; a folder without a manifest, from an earlier version, causes a warning.
+        """Read the manifest; without one, a warning is issued when the first file has been read.
 
         Raises
         ------
@@ -248,15 +248,19 @@ def _unreadable(file: Path, kind: str, error: Exception) -> ReadError:
 def _damaged(file: Path, kind: str, error: Exception) -> ReadError:
     """Return the error for a file whose content is invalid."""
     reason = f"it has no {error}" if isinstance(error, KeyError) else error
-    scenario, folder = shell_word(file.parent / SCENARIO), shell_word(file.parent)
+    again = f"onorbit run {shell_word(file.parent / SCENARIO)} --out DIR"
     return ReadError(
-        f"cannot read {file}: {reason}; repeat the run with onorbit run {scenario} --out {folder} --force",
+        f"cannot read {file}: {reason}; repeat the run in another folder with {again}",
         path=str(file), kind=kind,
     )  # fmt: skip
 
 
 def _hint(folder: Path) -> str:
-    """Return a hint for messages: the process that writes the run, the command that resumes it, or ``""``."""
+    """Return a hint for the message about a missing file; empty if there is none.
+
+    The hint names the process that writes the run, the files of a campaign, or the command that resumes an
+    interrupted run.
+    """
     owner = owner_of(folder)
     if owner is not None and owner.pid != os.getpid():
         return f"; {owner} is writing it"

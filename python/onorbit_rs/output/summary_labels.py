@@ -20,7 +20,10 @@ EXCEEDED = {
 
 
 class Tracking(NamedTuple):
-    """A tracking error of the controller ``owner``; ``owner`` is empty if the run has a single controller."""
+    """A tracking error of the controller ``owner``.
+
+    ``owner`` is empty for the error of the recorded tool, and for the joint error of a single controller.
+    """
 
     owner: str
     label: str

@@ -75,7 +75,7 @@ def _reason(event: Event, latches: dict[str, Summary]) -> str:
         return "check its condition 'when'"
     found, (distance, angle) = latches[event.name], event.when.latch.within
     return (
-        f"its latch was not met: the smallest distance of the frames was {found['nearest_m']:.3g} m, "
+        f"its latch was not met: the smallest distance between the frames was {found['nearest_m']:.3g} m, "
         f"at an angle of {found['nearest_rad']:.3g} rad, where 'within' permits {distance:.3g} m and "
         f"{angle:.3g} rad; correct the approach, or the conditions of the latch"
     )

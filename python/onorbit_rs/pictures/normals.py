@@ -19,7 +19,7 @@ _SAME = 1e-6
 
 
 def corner_normals(faces: Floats) -> Floats:
-    """Return unit normals (n, 4, 3) at the corners of quadrangles (n, 4, 3), on the side of their normals.
+    """Return unit normals (n, 4, 3) at the corners of quadrangles (n, 4, 3), on the side of the face normal.
 
     The normal at a corner is the mean, weighted by area, of the normals of all faces that meet there
     smoothly. The last two corners of a triangle coincide; faces without an area have a zero normal.

@@ -47,7 +47,7 @@ class Canvas:
     """
 
     def __init__(self, view: View, channels: int = 3) -> None:
-        """Create an empty canvas for the picture of a camera."""
+        """Create an empty canvas of the size of a view, which projects the points."""
         self._view = view
         self.color = np.zeros((view.height, view.width, channels), np.float32)
         self.inverse_depth = np.zeros((view.height, view.width))

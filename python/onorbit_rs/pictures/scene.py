@@ -101,7 +101,7 @@ class Scene:
         return rotation
 
     def surfaces(self) -> tuple[Floats, Floats]:
-        """Return faces (n, 4, 3), m, and their colours (n, 3) of all robots and targets."""
+        """Return faces (n, 4, 3), m, and their colours (n, 3) of all robots, and of targets of known size."""
         found = [self._drawn(member, shapes(member.model)) for member in self.members]
         found += [
             _target(self, target) for member in self.members for target in member.targets if target.size

@@ -72,7 +72,7 @@ def _number_class(index: int) -> str:
 
 
 def _cell(index: int, value: Any) -> str:
-    """Return one cell; numbers are rounded, with all their digits in an attribute."""
+    """Return one cell; a float is rounded, and an attribute contains all of its digits."""
     if value is None:
         return f"<td{_number_class(index)}>-</td>"
     if isinstance(value, float):

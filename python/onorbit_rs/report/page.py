@@ -84,7 +84,7 @@ def numbers_section(title: str, found: Sequence[tuple[str, Sequence[Row]]]) -> s
 
 
 def _verdict(summary: dict[str, Any]) -> Verdict:
-    """Return the verdict: passed, failed or incomplete, and whether the run reached its end."""
+    """Return the verdict: passed, failed, incomplete or absent, and whether the run reached its end."""
     status = str(summary.get("status") or "unknown")
     is_whole = status == "complete"
     has_passed = summary.get("certificate_passed")

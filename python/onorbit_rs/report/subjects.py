@@ -29,7 +29,7 @@ class OwnDrawing(NamedTuple):
 def subject_of_run(
     saved: SavedRun, scenario: Scenario, summary: dict[str, Any], remarks: list[str]
 ) -> Subject:
-    """Return the subject of the figures; add a remark for each unreadable robot, orbit or Earth model."""
+    """Return the subject of the figures; add a remark if the robot or the orbit cannot be used."""
     from onorbit_rs import figures
 
     model = _robot(scenario, summary, remarks)
@@ -94,7 +94,7 @@ def _around(saved: SavedRun, scenario: Scenario, remarks: list[str]) -> tuple[Or
     One that cannot be read is None, too, and a remark is added.
     """
     orbit = earth = None
-    with _remarked(remarks, "figures of the orbit are omitted, because the orbit could not be read"):
+    with _remarked(remarks, "figures of the orbit are omitted, because the orbit or Earth could not be read"):
         orbit = None if scenario.orbit is None else scenario.orbit.build(saved.folder)
         earth = build_earth(scenario.earth, scenario.epoch, orbit, saved.folder)
     return orbit, earth

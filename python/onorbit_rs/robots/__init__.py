@@ -26,7 +26,7 @@ def path(name: str) -> Path:
     Raises
     ------
     NotFoundError
-        If no bundled robot has this name; the message suggests the nearest name.
+        If no bundled robot has this name; the message suggests a similar name, if there is one.
     """
     return _ROBOTS.path(name)
 

@@ -106,7 +106,7 @@ def _expanded(
 ) -> tuple[Any, str]:
     """Return the expanded document and its text; convert errors to errors that name the file.
 
-    An error of nesting is raised after the block that handles it. Otherwise, it would be the context of the
+    A nesting error is converted after the block that handles it. Otherwise, it would be the context of the
     error of this package, and programs that pickle contexts, among them Dask, cannot pickle its traceback.
     """
     try:

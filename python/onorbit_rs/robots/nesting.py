@@ -16,7 +16,7 @@ TOO_DEEP = f"macros, includes or elements are nested too deeply; {HINT}"
 
 
 class NestingError(RecursionError):
-    """Raised if a file is nested too deeply; the message contains the macro or the file."""
+    """Raised if a file is nested too deeply; the message names the macro or the included file, if any."""
 
 
 class Nesting:
@@ -76,5 +76,5 @@ def check_depth(document: Any) -> None:
     while level:
         depth += 1
         if depth * _ELEMENT > _MOST_FRAMES:
-            raise NestingError(TOO_DEEP)
+            raise NestingError("elements are nested too deeply; reduce their depth")
         level = [child for node in level for child in node.childNodes if child.nodeType == child.ELEMENT_NODE]

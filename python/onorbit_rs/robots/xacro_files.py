@@ -22,7 +22,10 @@ class Files:
     """Opens files that one xacro file includes or loads, and finds packages."""
 
     def __init__(self, file: Path, package_paths: Sequence[Path], work: Work) -> None:
-        """Allow reading in the packages of ``file``, in ``package_paths`` and in packages found later."""
+        """Allow reading in ``package_paths``, in packages found later, and in the package of ``file``.
+
+        If ``file`` is in no package, its folder is used instead of the package.
+        """
         self._above = list(file.absolute().parents)
         self._given = [folder.absolute() for folder in package_paths]
         self._work = work
@@ -34,9 +37,10 @@ class Files:
     def find(self, package: str) -> str:
         """Return the folder of a package, searched in ``package_paths`` and in the file's parent folders.
 
-        Packages in the parent folders must contain a ``package.xml``. If the package is not found, return
-        ``package://name``; its meshes are then not drawn, and its includes are reported as missing. Raises
-        ValueError if the name is empty or a path.
+        A parent folder with the name of the package is accepted as it is; a folder inside a parent folder
+        must contain a ``package.xml``. If the package is not found, return ``package://name``; its meshes are
+        then not drawn, and its includes are reported as missing. Raises ValueError if the name is empty or a
+        path.
         """
         if not package:
             raise ValueError(
@@ -65,10 +69,10 @@ class Files:
         Raises
         ------
         OSError
-            If the file does not exist or cannot be read.
+            If the file does not exist.
         ValueError
-            If the file is in none of the packages, is not a regular file of at most 16 MiB, is not UTF-8
-            text, is empty, or has a document type.
+            If ``mode`` is not ``r``, or the file is in none of the packages, is not a readable regular file
+            of at most 16 MiB, is not UTF-8 text, is empty, or has a document type.
         """
         path = Path(name)
         path.stat()  # a missing file must reach xacro as an OSError
@@ -89,7 +93,10 @@ class Files:
         return io.StringIO(text)
 
     def glob(self, pattern: str) -> list[str]:
-        """Return the files that match an include with ``*`` in its last component."""
+        """Return the sorted files that match an include with ``*``, ``?`` or ``[`` in its last component.
+
+        Raises ValueError if a folder in the include contains one of these characters.
+        """
         folder, last = os.path.split(pattern)
         if any(sign in folder for sign in "*?["):
             raise ValueError(
@@ -147,7 +154,7 @@ def _checked(raw: bytes, name: str) -> str:
             f"{name!r} is not UTF-8 text (byte {error.start} is invalid); save it as UTF-8"
         ) from None
     if not text.strip():
-        raise ValueError(f"the file {name!r} is empty; write its content, or remove its include")
+        raise ValueError(f"the file {name!r} is empty; write its content, or refer to another file")
     if "<!DOCTYPE" in text or "<!ENTITY" in text:
         raise ValueError(
             f"{name!r} contains a document type declaration (<!DOCTYPE ...>), which is not accepted, because "

@@ -30,7 +30,7 @@ _UNITS = {
     "!foot": 0.3048,
     "!inches": 0.0254,
 }
-"""Units of numbers in YAML files, as in xacro."""
+"""Factors from the unit of a tagged number in a YAML file to rad or m, as in xacro."""
 
 
 def replace_parts(
@@ -41,7 +41,7 @@ def replace_parts(
     environment: Environment,
     remarks: list[str],
 ) -> None:
-    """Replace the parts of xacro that evaluate text, open files or read the environment, until ``undo`` ends.
+    """Replace, until ``undo`` closes, the parts of xacro that evaluate text or read files or the environment.
 
     A version of xacro that lacks one of the replaced functions raises AttributeError, because that version
     would evaluate expressions in another function. ``eval`` and ``exec`` are hidden from xacro.

@@ -59,11 +59,13 @@ def _finite(what: str, values: Any, joints: list[str]) -> list[float]:
     if len(numbers) != len(joints):
         raise RefusedError(
             f"the array '{what}' has length {len(numbers)}; the required length is {len(joints)}, one number "
-            f"for each of {', '.join(joints)}"
+            f"per joint ({', '.join(joints)})"
         )
     if not np.isfinite(numbers).all():
         bad = int(np.flatnonzero(~np.isfinite(numbers))[0])
-        raise RefusedError(f"{what} of joint {joints[bad]} is {numbers[bad]}; it must be finite")
+        raise RefusedError(
+            f"the value of joint {joints[bad]} in '{what}' is {numbers[bad]}; it must be finite"
+        )
     found: list[float] = numbers.tolist()
     return found
 
@@ -111,7 +113,7 @@ def _joint_commands(system: str, controls: Mapping[str, list[str]]) -> Callable[
         known = {joint for joints in controls.values() for joint in joints}
         if unknown := [name for name in names if name not in known]:
             raise RefusedError(
-                f"no external control drives {', '.join(unknown)}; the joints of external controls are "
+                f"no external control drives {', '.join(unknown)}; joints of external controls: "
                 f"{', '.join(sorted(known))}"
             )
         for control, joints in controls.items():
@@ -142,9 +144,10 @@ def _joint_commands(system: str, controls: Mapping[str, list[str]]) -> Callable[
 
 
 def _wrench(system: str, prefix: str, frames: Mapping[str, str]) -> Callable[[Any], list[Entry]]:
-    """Return the function that converts a wrench in its ``frame_id`` to an entry for a link or frame.
+    """Return the function that converts a wrench to an entry for a link or frame.
 
-    The torque is about the origin of the frame, and both vectors are in its axes.
+    The link or frame is that of ``frame_id``; an empty one denotes the root link. The torque is about the
+    origin of this frame, and both vectors are in its axes.
     """
     bodies = {frame: body for body, frame in frames.items()}
     bodies |= dict.fromkeys(("", BASE), next(iter(frames)))

@@ -80,7 +80,7 @@ _JOINED: WeakValueDictionary[int, Joined] = WeakValueDictionary()
 
 
 def join(domain: int, network: str) -> Joined:
-    """Join a domain, or return it if this process has already joined: CycloneDDS opens the sockets only once.
+    """Join a domain, or return it if this process has joined it: CycloneDDS opens the sockets only once.
 
     Raises
     ------

@@ -13,7 +13,7 @@ from onorbit_rs.exceptions import Ros2Error
 MOST = 1000
 """Largest number of messages of a topic that are executed at once, and history depth of publishers."""
 MOST_COUNTED = 100_000
-"""Largest number of messages of a topic kept between two readings, so that messages too many are counted."""
+"""Largest number of messages of a topic kept between two readings; those beyond ``MOST`` are only counted."""
 
 _ANY = SampleState.Any | ViewState.Any | InstanceState.Any
 _AGAIN_S = 0.2

@@ -93,7 +93,7 @@ class LiveRun:
             return True
         if not self.can_restart:
             return False
-        self.restart()  # sets controllers in Python back
+        self.restart()  # resets controllers in Python
         self._start(end)
         return True
 
@@ -113,7 +113,7 @@ class LiveRun:
         return own.external
 
     def next_time(self, shortest: float) -> float:
-        """Return a time, s, on the grid of ticks that is about ``shortest``, s, and at least a tick ahead.
+        """Return a time, s, on the grid of ticks: ``shortest``, s, ahead, rounded to at least one tick.
 
         The time is not later than the end of the run.
         """

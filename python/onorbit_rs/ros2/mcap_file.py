@@ -58,7 +58,7 @@ class McapFile:
         self._write(Header(profile="ros2", library=f"onorbit_rs {build_info()['version']}"))
 
     def add_topic(self, name: str, kind: str, *, is_latched: bool = False) -> int:
-        """Add a topic, and return its number for :meth:`write`; raise KeyError for an unknown type."""
+        """Add a topic, and return its number for :meth:`write`; raise TypesysError for an unknown type."""
         if kind not in self._schemas:
             text = STORE.generate_msgdef(kind, ros_version=2)[0]
             self._schemas[kind] = Schema(
@@ -79,7 +79,8 @@ class McapFile:
     def write(self, topic: int, times: NDArray[np.int64], messages: NDArray[np.uint8]) -> None:
         """Add messages (T, size), in CDR, of times (T,), ns.
 
-        They are written in a later :meth:`flush`; the arrays must not change until then.
+        They are written by the next :meth:`flush`, which this method calls if the chunk is full; the arrays
+        must not change until then.
         """
         if not len(times):
             return

@@ -34,7 +34,7 @@ def ros_names(names: Iterable[str], kind: str) -> dict[str, str]:
     kept = {name for name, ros in wanted.items() if ros == name}
     reason = (
         "names in ROS topics must be distinct, contain only letters, digits and single underscores, and "
-        f"neither begin with a digit nor end with an underscore; these {kind}s are renamed there"
+        f"neither begin with a digit nor end with an underscore; renamed {kind}s"
     )
     return _numbered(wanted, kept, kept, reason)
 
@@ -50,7 +50,7 @@ def frame_names(names: Iterable[str], reserved: Collection[str]) -> dict[str, st
         Names of other frames of the tree, such as ``world``.
     """
     wanted = {name: name for name in names}
-    reason = "links and frames of the robot are renamed in /tf, because other frames have their names"
+    reason = "links and frames whose names other frames in /tf already have are renamed there"
     return _numbered(wanted, wanted.keys() - reserved, {*wanted, *reserved}, reason)
 
 

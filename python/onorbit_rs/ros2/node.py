@@ -102,15 +102,15 @@ class Node:
             Simulated time, s, after which a wrench on a link ends unless another message for the link
             arrives. Default: no timeout.
         keep_rows : int, optional
-            Least number of last rows that the run keeps in memory besides the first row; older rows are
+            Smallest number of latest rows that the run keeps in memory besides the first row; older rows are
             dropped once there are more than twice as many. The trace that :meth:`spin` returns then has only
             the rows kept. Default: all rows.
         has_priority : bool
             Whether the node has real-time priority over other programs (``SCHED_FIFO`` of Linux) in pace
             ``real_time``. A warning is issued where this is not permitted.
         on_message : callable
-            Called with the text of each answer and warning on ``/events``, and of each event except touches
-            of contacts.
+            Called with the text of each answer and warning on ``/events``, and of each event except
+            touch-downs and lift-offs of contacts.
 
         Raises
         ------
@@ -186,7 +186,7 @@ class Node:
     def jitter(self) -> dict[str, float]:
         """Delays of the ticks in pace ``real_time``.
 
-        ``late_median_s``, ``late_99_s`` (quantile of 99 %) and ``late_max_s`` are delays in wall-clock time,
+        ``late_median_s``, ``late_99_s`` (99 % quantile) and ``late_max_s`` are delays in wall-clock time,
         s; ``missed`` is the fraction of the ticks that are late by more than a tick, ``slipped_s`` the sum of
         the delays that are not caught up, s, and ``ticks`` the number of ticks. The mapping is empty in
         another pace.
@@ -204,9 +204,10 @@ class Node:
         return list(self._inbox.topics())
 
     def spin(self, duration: float | None = None) -> Trace | WorldTrace:
-        """Run until a simulated time, s, or until Ctrl-C, and return the trace; None means an open end.
+        """Run until a simulated time, s, or until a signal such as Ctrl-C, and return the trace.
 
-        If the run begins in a pause or in pace ``stepped``, the row at the start is published at once.
+        If ``duration`` is None, only a signal ends the run. If the run begins in a pause or in pace
+        ``stepped``, the row at the start is published at once.
 
         Raises
         ------
@@ -249,7 +250,7 @@ class Node:
         return trace
 
     def close(self) -> None:
-        """Complete the files and leave the domain, after subscribers have received all messages.
+        """Complete the files, wait up to 1 s for subscribers to receive all messages, and leave the domain.
 
         A second call has no effect.
         """

@@ -29,7 +29,8 @@ class Publisher:
     ) -> None:
         """Create the publishers of all topics and publish the latched messages.
 
-        ``tell`` is called with the text of each answer, and of each event except touches of contacts.
+        ``tell`` is called with the text of each answer or warning, and of each event except touch-downs and
+        lift-offs of contacts.
         """
         self._topics, self._tell, self._recording = topics, tell, recording
         self._writers = {name: participant.writer(name, kind) for name, kind in topics.names}

@@ -108,7 +108,7 @@ def _check_joints(trace: Any, models: Mapping[str, Model]) -> None:
             raise InputError(
                 f"{whose} has {count(len(model.joint_names), 'joint', 'joints')}, but the trace has "
                 f"{joints}; give the model of the run",
-                name="models", got=model, expected=f"a model with {joints} joints",
+                name="models", got=model, expected=f"a model with {count(joints, 'joint', 'joints')}",
             )  # fmt: skip
 
 

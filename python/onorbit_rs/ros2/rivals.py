@@ -33,6 +33,6 @@ class Rivals:
         if self._participant.has_new_rival("/clock"):
             session.say(
                 WARN, "/clock",
-                f"another node publishes the time in domain {self._domain}: both nodes execute the same "
+                f"another node publishes the time in domain {self._domain}, and both may receive the same "
                 "commands; give one of them another domain, by --domain or, in Python, Node(domain=…)",
             )  # fmt: skip

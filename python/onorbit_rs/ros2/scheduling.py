@@ -20,9 +20,9 @@ _TOO_MANY = 50 * _YOUNG
 def collected_in_slack() -> Iterator[Callable[[float], None]]:
     """Disable automatic garbage collection in the block, since it may pause the program for 30 ms.
 
-    Yields a function to be called with the time, s, until the next tick: if there are many new objects and
-    the time suffices, the function collects those that are garbage. Garbage that has survived such a
-    collection is collected after the block.
+    Yields a function to be called with the time, s, until the next tick. If there are many new objects and
+    the time suffices, or if there are very many, the function collects those that are garbage. Garbage that
+    has survived such a collection is collected after the block.
     """
 
     def tidy(slack: float) -> None:

@@ -39,7 +39,7 @@ TF = "tf2_msgs/msg/TFMessage"
 
 @dataclass(frozen=True)
 class Latched:
-    """A topic with a single message, which subscribers receive also if they join later."""
+    """A topic with a single message, which subscribers receive even if they join later."""
 
     name: str
     kind: str

@@ -85,7 +85,7 @@ def build(scenario: Scenario, *, runs_code: bool = True) -> Built:
 
 
 def build_parts(scenario: Scenario, *, runs_code: bool) -> tuple[_core.Model, Environment, State]:
-    """Return the robot, the environment and the initial state; the errors of all parts come together."""
+    """Return the robot, the environment and the initial state; errors of all parts are raised together."""
     faults, model, around, state = Faults(), None, None, None
     with faults.kept():
         check_record_every(scenario)
@@ -145,7 +145,7 @@ def build_around(
 
 
 def check_robot(scenario: Scenario, model: _core.Model) -> None:
-    """Raise the errors of the tool, the surfaces and the actuators, which the robot determines."""
+    """Raise an error if the tool, the surfaces or the actuators do not match the robot."""
     faults = Faults()
     with faults.kept(), located(scenario, *scenario.place_of_tool):
         if scenario.tracked_tool is not None:

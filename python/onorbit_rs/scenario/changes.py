@@ -133,7 +133,7 @@ def _index(inner: list[Any], step: str | int, path: str, at: Location) -> int:
 def _not_inside(path: str, at: Location, inner: Any) -> InputError:
     where = dotted(at) or "the scenario"
     if at and at[-1] == "robot" and isinstance(inner, str):
-        hint = "a campaign can vary robot.links and robot.joints, a run takes them from the robot's file"
+        hint = "a campaign can vary robot.links and robot.joints, but a run takes them from the robot's file"
         return _invalid(path, f"{where} is {inner!r:.40}, which has no such entry; {hint}")
     if isinstance(inner, dict):
         return _invalid(path, f"{where} is a mapping, which has no indices{did_you_mean('', inner)}")

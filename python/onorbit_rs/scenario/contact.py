@@ -40,7 +40,7 @@ class HuntCrossley(Part):
     stiffness: Annotated[float, Positive]
     """Stiffness ``k``, N/m^n: a number without a unit, or with a unit such as N/m for ``exponent: 1``."""
     dissipation: Annotated[Dissipation, NotNegative] | None = None
-    """Dissipation ``d``, s/m, as an alternative to ``restitution``. Default: nothing is dissipated."""
+    """Dissipation ``d``, s/m, as an alternative to ``restitution``. If both are omitted, ``d`` is zero."""
     restitution: Number | None = None
     """Coefficient of restitution of a central impact at ``speed``, more than 0 and at most 1."""
     speed: Annotated[Speed, Positive] | None = None

@@ -21,7 +21,7 @@ def unknown_key(key: str, hint: str) -> PydanticCustomError:
 
 
 def inconsistent(at: str | Location, message: str) -> PydanticCustomError:
-    """Return the error for entries that contradict each other; ``at`` is the entry to correct."""
+    """Return the error for an invalid entry, or for contradictory entries; ``at`` is the entry to correct."""
     where = (at,) if isinstance(at, str) else at
     return PydanticCustomError("inconsistent", "{message}", {"message": message, "at": where})
 

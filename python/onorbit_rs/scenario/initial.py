@@ -93,7 +93,7 @@ class InitialState(Part):
         Raises
         ------
         FrameError
-            If a joint does not exist; the message suggests the nearest name.
+            If a joint does not exist; the message suggests a similar name, if there is one.
         ShapeError
             If a list of joints has the wrong length.
         QuantityError

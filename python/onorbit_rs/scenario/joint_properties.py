@@ -81,7 +81,7 @@ class JointProperties(Part):
         Raises
         ------
         FrameError
-            If the robot has no joint of this name; the message suggests the nearest name.
+            If the robot has no joint of this name; the message suggests a similar name, if there is one.
         ModelError
             If the joint is fixed, or the values are inconsistent.
         QuantityError

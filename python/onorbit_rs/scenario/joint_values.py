@@ -94,7 +94,7 @@ def joint_values(
     Raises
     ------
     FrameError
-        If a joint does not exist; the message suggests the nearest name.
+        If a joint does not exist; the message suggests a similar name, if there is one.
     ShapeError
         If a list has the wrong length.
     QuantityError

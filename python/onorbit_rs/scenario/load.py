@@ -42,8 +42,8 @@ def load(
 
     Raises
     ------
-    NotFoundError
-        If ``source`` is neither a bundled name nor a file.
+    NotFoundError, ReadError
+        If ``source`` is neither a bundled name nor a file, or the file cannot be read.
     DtypeError
         If ``source`` has another type.
     InputError

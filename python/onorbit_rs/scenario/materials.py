@@ -41,6 +41,10 @@ def look_up(contacts: list[Contact], table: Mapping[str, MaterialPair]) -> None:
         try:
             found = own or _core.Friction.of(a, b)
         except InputError as error:
-            given = f"; given in 'materials': {', '.join(table)}" if table else ", or add it to 'materials'"
+            given = (
+                f"; pairs in 'materials': {', '.join(table)}"
+                if table
+                else "; 'materials' can define other pairs"
+            )
             raise inconsistent(("contacts", index, "friction", "materials"), f"{error}{given}") from None
         friction.static, friction.kinetic, friction.materials = found.static, found.kinetic, None

@@ -37,7 +37,7 @@ class RobotKeys(Part):
     tool: str | None = None
     """Frame that tracks the reference and is recorded."""
     controller: Controller | None = None
-    """Single controller. Default: no joint torques."""
+    """Single controller. Without ``controller`` and ``controllers``, no joint torques are commanded."""
     controllers: Annotated[list[AnyControl], Field(min_length=1)] | None = None
     """Several controllers, each with a joint group and a reference; an alternative to ``controller``."""
     reference: Reference | None = None

@@ -30,8 +30,8 @@ class ControlSettings(Part):
     reference_start_tolerance: (
         Annotated[list[NotNegativeNumber], Field(min_length=2, max_length=2)] | None
     ) = None
-    """Largest distance, m, and angle, rad, between a tool and the start of its reference. Default: 0.05,
-    0.1."""
+    """Largest distance, m, and angle, rad, between a tool and the start of its reference. Default: 0.05 m
+    and 0.1 rad."""
 
 
 class IntegrationSettings(Part):

@@ -33,6 +33,6 @@ def path(name: str) -> Path:
     Raises
     ------
     NotFoundError
-        If no bundled scenario has this name; the message suggests the nearest name.
+        If no bundled scenario has this name; the message suggests a similar name, if there is one.
     """
     return SCENARIOS.path(name)

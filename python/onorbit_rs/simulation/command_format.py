@@ -119,7 +119,8 @@ def read_commands(file: str | os.PathLike[str]) -> list[Command]:
     NotFoundError, ReadError
         If the file does not exist or cannot be read.
     InputError
-        If a line is not a valid command, or times decrease; the message contains the number of the line.
+        If the file is not UTF-8 text, a line is not a valid command, or times decrease; for an error in a
+        line, the message contains the number of the line.
     """
     path = Path(file)
     if not path.is_file():

@@ -40,7 +40,7 @@ def apply(stepper: Stepper, entry: Mapping[str, Any]) -> None:
 def give(stepper: Stepper, entry: Command, *, check_only: bool = False) -> None:
     """Give a stepper a checked command; error messages contain its location in the file.
 
-    ``check_only`` checks a constant command to joints without giving it; it has no effect on other commands.
+    With ``check_only``, a constant command to joints is only checked; other commands are given regardless.
     """
     if "trigger" not in entry and "system" not in entry and len(stepper.systems) > 1:
         names = ", ".join(stepper.systems)
@@ -102,7 +102,7 @@ class CommandLog:
     """
 
     def __init__(self, file: str | os.PathLike[str] | None = None) -> None:
-        """Create an empty log; open its file, if one is given, or raise an OutputFolderError."""
+        """Create an empty log, and open its file if one is given; raise OutputFolderError if that fails."""
         self.entries: list[Command] = []
         self._path = None if file is None else Path(file)
         self._stream = None
@@ -131,7 +131,9 @@ class CommandLog:
         Raises
         ------
         OnOrbitError
-            As :func:`apply`; no command has then been given or logged.
+            If a command is rejected, as for :func:`apply`; no command has then been given or logged.
+        OutputFolderError
+            If the file cannot be written; the commands have then been given.
         """
         commands = [checked({**entry, "time": stepper.time}) for entry in entries]
         if len(commands) > 1:

@@ -99,7 +99,7 @@ def _not_written(folder: OutputFolder) -> str:
 
 
 def _not_drawn(folder: OutputFolder) -> str:
-    """Return a note with the command that writes the missing figures and the recording."""
+    """Return a note with the command that writes the figures and, if there is a checkpoint, the recording."""
     word = shell_word(folder.path)
     if has_checkpoint(folder.path):
         return f"figures and recording are not; write them with: onorbit resume {word}"
@@ -159,7 +159,7 @@ def _keep_rows(
     tell: Callable[[str], None],
     outputs: Outputs,
 ) -> None:
-    """Write the results of a run that stopped early to its folder."""
+    """Write the results of a run that stopped early; if it has no rows, remove its files instead."""
     if stop.trace is None or len(stop.trace) == 0:
         folder.discard()
         return

@@ -90,7 +90,7 @@ class StreamedRows:
 
         Raises
         ------
-        OutputFolderError
+        OutputFolderError, CheckpointError
             If the rows cannot be written.
         """
         traces: dict[str, Any] = {prefix: ending[name] for prefix, name in self._prefixes.items()}

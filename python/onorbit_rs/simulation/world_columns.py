@@ -1,4 +1,4 @@
-"""Columns of a world, which are computed from the rows of its systems before these leave the memory."""
+"""Columns of a world, computed from the rows of its systems before those rows are removed from memory."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class WorldColumns:
             self._since = float(np.nextafter(time[0], np.inf))
 
     def write(self, in_memory: Mapping[str, int], kept: int) -> bool:
-        """Write the columns at the times for which only the last ``kept`` rows of the systems are not needed.
+        """Write the columns before the time from which the last ``kept`` rows of each system are sufficient.
 
         Return False if the rows must stay in memory, because too many of them have the same time, or because
         the columns cannot be written. ``in_memory`` contains the number of rows of each system by prefix.
@@ -87,7 +87,7 @@ def _is_kept(time: Any, until: float) -> bool:
 
 
 def _first_time(times: list[Any]) -> float | None:
-    """Return the first time after which all systems have all of their rows, given their last rows."""
+    """Return the time from which the given last rows of every system are complete; None if there is none."""
     later = [own[own > own[0]] for own in times]
     return max(float(own[0]) for own in later) if all(len(own) for own in later) else None
 

@@ -153,7 +153,7 @@ def _center(run: RecordedRun) -> str:
     """
     if not run.is_about_earth:
         raise InputError(
-            "the orbit is not around the Earth, so OEM and AEM cannot describe it; use --csv or --parquet",
+            "OEM and AEM are written only for orbits around the Earth; otherwise, use --csv or --parquet",
             name="orbit",
         )
     return "EARTH"

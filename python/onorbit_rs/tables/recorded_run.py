@@ -45,8 +45,9 @@ class RecordedRun:
     def __repr__(self) -> str:
         """Return a short text with the folder, the number of rows, the systems and the status."""
         whose = f" of {', '.join(self.systems)}" if self.systems else ""
-        rows = len(self._arrays["time"])
-        return f"<RecordedRun: {self.folder}, {rows} rows{whose}, {self.summary.get('status')}>"
+        number = len(self._arrays["time"])
+        rows = f"{number} row{'' if number == 1 else 's'}"
+        return f"<RecordedRun: {self.folder}, {rows}{whose}, {self.summary.get('status')}>"
 
     def columns(self, system: str | None = None) -> dict[str, Any]:
         """Return the columns of the robot or of one system, by path.

@@ -99,7 +99,7 @@ class Arrows:
             self._send(rows, torque, center, torque_about_center(rows, centers, wrenches)[:, None, :])
 
     def _send_loops(self, rows: TraceRows) -> None:
-        """Send force and moment of all loops at their points; moments of rounding errors are omitted."""
+        """Send force and moment of all loops at their points, but no moments that are rounding errors."""
         if not rows.loops:
             return
         path, parts = self.setting.entity("loops"), COLUMNS["loops"].parts

@@ -16,7 +16,7 @@ FLUSH_TIMEOUT_S = 300.0
 """Timeout of rerun's encoder, s; encoding usually takes a few seconds."""
 
 _MAGIC, _FOOTER_BYTES = b"RRF2", 12
-"""First bytes of a complete file, and size of its footer, bytes."""
+"""First bytes of the footer that ends a complete file, and size of the footer, bytes."""
 
 
 class Encoded:

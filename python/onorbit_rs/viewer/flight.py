@@ -99,7 +99,7 @@ def send_flight(recording: rr.RecordingStream, bodies: list[Body], most: int) ->
 
 
 def flight_view(bodies: list[Body], contents: list[str] | None = None) -> rrb.View:
-    """Return the view along the orbit normal: radial is up, along track is to the right.
+    """Return a view obliquely along the orbit normal: radial is up, along track is to the right.
 
     ``contents`` are the entities to show; by default all entities below ``world/flight``.
     """

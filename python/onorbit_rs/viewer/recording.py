@@ -136,7 +136,10 @@ def send_static(
     notes: str = "",
     is_live: bool = False,
 ) -> Viewpoint:
-    """Send the layout, log the static entities and return the viewpoint, all from the first rows only."""
+    """Send the layout, log the static entities and return the viewpoint.
+
+    In a live view, ``rows`` are the first rows only.
+    """
     viewpoint = Viewpoint.of(rows, setting)
     views = layout(rows, setting, viewpoint, plots, duration_s, has_notes=bool(notes), is_live=is_live)
     send_blueprint(recording, views)

@@ -44,7 +44,7 @@ class WorldLiveView(View):
 
     @property
     def shown(self) -> int:
-        """Number of rows that the view has received of the system with the fewest."""
+        """Smallest number of rows that the view has received of any system."""
         return min(self._counts.values())
 
     def _show_columns(self, columns: Mapping[str, Floats], events: Sequence[EventRecord]) -> None:

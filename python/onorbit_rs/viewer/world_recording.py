@@ -149,7 +149,10 @@ def log_world(
     has_events: bool = False,
     is_live: bool = False,
 ) -> Stage:
-    """Send the layout, log the static entities and return the viewpoints, all from the first rows only."""
+    """Send the layout, log the static entities and return the viewpoints.
+
+    In a live view, ``world`` contains the first rows only.
+    """
     setting, bodies = world.setting, bodies_of(world)
     stage = Stage.of(world, is_live=is_live)
     send_blueprint(
@@ -216,7 +219,7 @@ def _events_of(series: Series, setting: WorldSetting, events: Sequence[EventReco
 
 
 def _orbit_labels(world: WorldRows) -> dict[str, str]:
-    """Return the label of each spacecraft; spacecraft near each other share a label at the first of them."""
+    """Return the label of each spacecraft; if all are near each other, the first one has a common label."""
     names = world.setting.names
     first = world.first["position_eci"][0]
     apart = max(float(np.linalg.norm(world[name]["position_eci"][0] - first)) for name in names)

@@ -45,7 +45,8 @@ def robot_polygons(
     -------
     list of (faces, colors)
         For each configuration: corners (n, 4, 3) of quadrangles in W, m; colours (n, 3), RGB from 0 to 1.
-        The last two corners of a triangle coincide. Meshes have at most :data:`MESH_TRIANGLES`.
+        The last two corners of a triangle coincide. All meshes together have at most
+        :data:`MESH_TRIANGLES` triangles.
     """
     robot = shapes(model) if drawn is None else drawn
     own = [*_primitives(robot, around), *_meshes(model, robot, q)]

@@ -9,7 +9,8 @@ use crate::simulation::closed_start;
 /// `None` if the robot has no closed loops and no mimic joints.
 ///
 /// # Errors
-/// [`InputError::OpenStart`] for the first of these states in which a loop is open or cannot be closed.
+/// [`InputError::OpenStart`] for the first of these states in which a loop is open, a mimic joint does not
+/// follow its leader or the constraints cannot be satisfied.
 pub(super) fn closed_starts(
     model: &Model,
     [q0, v0]: [&[f64]; 2],

@@ -77,12 +77,13 @@ pub enum InputError {
     NoThreads,
     #[error(
         "the run from state {state} diverged: its positions or rates are no longer finite; reduce time_step, \
-         the initial rates, the gains or the joint damping"
+         the initial rates, the torques, the gains or the joint damping"
     )]
     Diverged { state: usize },
     #[error("orbit {orbit}: {source}")]
     Orbit { orbit: usize, source: OrbitError },
-    /// An element, of one state or of all states, that does not describe an ellipse.
+    /// An orbital element, of one state or of all states, that does not describe an ellipse, or a `mu` that
+    /// is not positive and finite.
     #[error(
         "{name} is {value}{of_state}; it must be {expected}",
         value = short(*value), of_state = state.map_or_else(String::new, |state| format!(" in state {state}"))

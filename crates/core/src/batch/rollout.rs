@@ -14,13 +14,14 @@ use std::sync::{Mutex, PoisonError};
 impl Rollout<'_> {
     /// Simulates one run from each of the initial states `q0`, `(B, nq)`, and `v0`, `(B, nv)`, and writes the
     /// recorded states to `q`, `(B, rows, nq)`, and `v`, `(B, rows, nv)`, where `rows` is [`Rollout::rows`].
-    /// The results are bit-identical for any number of threads. The runs of a robot with closed loops or
-    /// mimic joints start with closed loops, as a simulation does.
+    /// The results are bit-identical for any number of threads. For a robot with closed loops or mimic
+    /// joints, the initial states are first corrected to satisfy these constraints, as in a simulation.
     ///
     /// # Errors
-    /// [`InputError`] for invalid inputs, [`InputError::OpenStart`] for an initial state in which a loop is
-    /// open or cannot be closed, and [`InputError::Diverged`] for the first run whose state becomes
-    /// non-finite, after the results of all other runs were written.
+    /// [`InputError`] for invalid inputs, [`InputError::OpenStart`] for the first initial state in which a
+    /// loop is open, a mimic joint does not follow its leader or the constraints cannot be satisfied, and
+    /// [`InputError::Diverged`] for the first run whose state becomes non-finite, after the results of all
+    /// other runs were written.
     pub fn run(
         &self,
         model: &Model,

@@ -44,7 +44,8 @@ impl<'a, S: Real> Lanes<'a, S> {
     /// Loads the initial states of `count` runs, starting with run `first`, and closes their loops.
     ///
     /// # Errors
-    /// [`InputError::OpenStart`] for the first of these states in which a loop is open or cannot be closed.
+    /// [`InputError::OpenStart`] for the first of these states in which a loop is open, a mimic joint does
+    /// not follow its leader or the constraints cannot be satisfied.
     pub(super) fn start(
         &mut self,
         q0: &[f64],

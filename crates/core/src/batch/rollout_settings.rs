@@ -14,7 +14,8 @@ pub enum RolloutControl<'a> {
     /// Given joint efforts, `(B, steps, n)`, N m or N, each held during its step.
     Torques(&'a [f64]),
     /// Computed torque that tracks the same reference in all runs. The reference must not be in an orbital
-    /// frame. Robots with closed loops or mimic joints are simulated one after the other on each thread.
+    /// frame. The runs of a robot with closed loops or mimic joints are simulated one at a time on each
+    /// thread.
     ComputedTorque(&'a ComputedTorque, &'a TaskReference),
 }
 

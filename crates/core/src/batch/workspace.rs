@@ -34,7 +34,7 @@ impl<S: Real> Workspace<S> {
         }
     }
 
-    /// Returns true if the workspace can be used for this robot, because it was allocated for a robot with
+    /// Returns true if the workspace can be used for this robot: it must have been allocated for a robot with
     /// the same number of bodies, the same base and the same closures.
     pub(super) fn fits(&self, model: &Model) -> bool {
         self.kernel_data.data.bodies.len() == model.nodes().len()
@@ -77,8 +77,8 @@ impl<S: Real> Workspace<S> {
         )
     }
 
-    /// Loads the inputs of the states in `range`. Returns true if all numbers are finite and all quaternions
-    /// have unit norm.
+    /// Loads the inputs of the states in `range` and normalises their quaternions. Returns true if all
+    /// numbers are finite and all quaternions had unit norm within [`UNIT_NORM`].
     #[inline(always)]
     fn read(&mut self, call: &Call<'_>, range: &Range<usize>) -> bool {
         let mut is_valid = true;

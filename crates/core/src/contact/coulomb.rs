@@ -119,8 +119,8 @@ impl ImpulseProblem {
     }
 
     /// Replaces the impulse of one block, whose first row is `start`, by the one that satisfies the conditions
-    /// of the block for the other impulses in `p`. Returns the largest resulting change of a velocity of the
-    /// block, m/s or rad/s.
+    /// of the block for the other impulses in `p`. Returns the largest change of a velocity of the block,
+    /// m/s or rad/s, that a component of the impulse causes in its own row.
     fn improve(&self, block: &Block, start: usize, p: &mut [f64]) -> f64 {
         let n = self.rows();
         let w = |i: usize, j: usize| self.matrix[(start + i) * n + start + j];

@@ -85,7 +85,7 @@ pub enum ContactError {
     /// Coulomb's law of friction.
     #[error(
         "contact '{contact}': no force of a rigid contact with Coulomb friction keeps the sliding links {links} from \
-         overlapping: the friction coefficient {friction} is above {limit}, the value at which friction pushes the \
+         overlapping: the friction coefficient {friction} is not below {limit}, at which friction pushes the \
          links into each other as fast as the normal force separates them (Painlevé's paradox); use a compliant \
          normal force, such as HuntCrossley, or a smaller friction coefficient",
         friction = unlike(*friction, &[*limit]), limit = short(*limit)
@@ -97,7 +97,7 @@ pub enum ContactError {
         links: String,
         /// Coefficient of friction of the contact.
         friction: f64,
-        /// Largest coefficient of friction for which a contact force exists.
+        /// Coefficient of friction at or above which no contact force exists.
         limit: f64,
     },
     /// The iteration for the impulses or forces of rigid contacts did not converge.

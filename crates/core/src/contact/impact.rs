@@ -24,8 +24,8 @@ pub struct ImpactLaw {
 }
 
 impl ImpactLaw {
-    /// Speed of separation, m/s, below which an impact has no restitution, so that the bodies stay in contact
-    /// instead of bouncing infinitely often.
+    /// Speed of separation, m/s, at or below which an impact has no restitution, so that the bodies stay in
+    /// contact instead of bouncing infinitely often.
     pub const REST_SPEED: f64 = 1e-5;
 
     /// Checks the parameters.

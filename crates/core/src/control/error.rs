@@ -43,8 +43,9 @@ pub enum ControlError {
     )]
     FingerWithoutContact { control: String, joint: String },
     #[error(
-        "control '{control}': {who} not approach any other link of '{system}' that may touch the object, so nothing \
-         opposes their force; check the signs of closing_rate, or declare a contact of the opposite finger",
+        "control '{control}': {who} not approach any other link of '{system}' that may touch the object, so \
+         nothing opposes the grip force; check the signs of closing_rate, or declare a contact of the \
+         opposite finger",
         who = match &fingers[..] {
             [finger] => format!("the link {finger} does"),
             fingers => format!("the links {} do", fingers.join(", ")),
@@ -105,9 +106,10 @@ pub enum ControlError {
     )]
     UnknownLoad { control: String, system: String, other: String },
     #[error(
-        "control '{control}' has {what}, which its controller does not use; omit the {what}, or use a \
+        "control '{control}' has {what}, which its controller does not use; omit {them}, or use a \
          computed-torque controller of {controlled}",
-        what = if *is_load { "load" } else { "internal forces" },
+        what = if *is_load { "a load" } else { "internal forces" },
+        them = if *is_load { "it" } else { "them" },
         controlled = if *is_load { "a tool" } else { "a tool or of joints" }
     )]
     UnusedLoad { control: String, is_load: bool },
@@ -219,7 +221,7 @@ pub enum ControlError {
     )]
     ControlEnded { control: String },
     #[error(
-        "{name} of the command to control '{control}' must have {expected}, but it has {got}",
+        "the list '{name}' of the command to control '{control}' must have {expected}, but it has {got}",
         got = count(*got, "number"),
         expected = if *points == 1 { format!("{}, one per joint of its group", count(*joints, "number")) }
             else { format!(

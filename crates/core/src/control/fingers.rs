@@ -6,7 +6,7 @@ use crate::dynamics::{Data, base_rotation};
 use crate::model::{Axis, Constraint, Model};
 use crate::spatial::{Scalar, Vec3};
 
-/// Finger of a gripper, moved by a joint of the group of a control or by a joint that mimics one of them.
+/// Finger of a gripper, moved by a joint of the group of a control or by a joint that mimics such a joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Finger {
     /// Index in the group of the joint that moves the finger or, if the finger is moved by a mimic joint, of
@@ -80,8 +80,9 @@ impl Finger {
     }
 }
 
-/// Returns those of the joints that move a body which belong to `finger`: the joints from the body to that of
-/// the finger without those of fingers in between, and the joints before it if no other finger comes first.
+/// Returns the joints on the path from a body to the base that are assigned to `finger`. Each joint is
+/// assigned to the nearest finger between it, inclusive, and the base; joints without such a finger are
+/// assigned to the finger on the path that is nearest to the base.
 fn joints_of<'a>(
     finger: &'a Finger,
     body: usize,

@@ -10,7 +10,7 @@ use crate::model::{Axis, BASE_NQ, Model};
 /// Law that closes the fingers of a gripper at a given rate until they touch an object, and then grips it
 /// with a given force.
 ///
-/// A finger is moved by a joint of the group, or by a joint that mimics one of them. `N` is the mean of the
+/// A finger is moved by a joint of the group, or by a joint that mimics such a joint. `N` is the mean of the
 /// normal forces of all fingers, computed from the contact forces of the simulation. Until all fingers touch,
 /// each joint moves at its closing rate `r`: `τ = d (r − q̇)`. Then the desired force `F` increases from the
 /// present normal force to `force` at the rate `force/ramp`, and
@@ -19,10 +19,10 @@ use crate::model::{Axis, BASE_NQ, Model};
 ///
 /// with the lever `λ` of the joint: the effort that balances a normal force of 1 N at each of its fingers.
 /// The lever follows from the points and normals of the contacts and, in a robot with closed loops, from the
-/// motion of the finger that the loops impose. `Δ` is the displacement of the joint since
-/// all fingers touched, without its component along the closing motion; the stiffness `p` thus keeps
-/// independent joints from moving sideways together with the object. If a finger loses contact, the gripper
-/// closes at its closing rate again.
+/// motion of the finger that the loops impose. `Δ` is the displacement of the joint since all fingers
+/// touched, without its component along the closing motion; the stiffness `p` thus keeps independent joints
+/// from moving sideways together with the object. If a finger loses contact, the joints move at their
+/// closing rates again.
 #[derive(Clone, Debug)]
 pub struct GripForce {
     /// Desired mean of the normal forces of all fingers, N.

@@ -13,7 +13,7 @@ use crate::reference::JointSample;
 /// The torques are `τ = M* q̈ + c* − Q* + f` with the desired positions `qd` and the symbols of
 /// [`ComputedTorque`](super::ComputedTorque); the error `e = qd − q` then obeys `ë + kd ė + kp e = 0`. The
 /// joint drives compensate Coulomb friction, from rest and through reversals. Joint angles are not wrapped:
-/// after a full turn the error is 2π.
+/// after a full turn the error is 2π rad.
 #[derive(Clone, Debug)]
 pub struct JointComputedTorque {
     /// Gain `kp` of the position error, 1/s².

@@ -17,7 +17,7 @@ fn fill_rows<const N: usize>(
     rows: &mut [f64],
     at: impl Fn(usize, f64) -> Result<[f64; N], EarthError>,
 ) -> Result<(), EarthError> {
-    check_length("the result", rows.len(), N * times.len())?;
+    check_length("result", rows.len(), N * times.len())?;
     for (index, (&t, row)) in times.iter().zip(rows.chunks_exact_mut(N)).enumerate() {
         row.copy_from_slice(&at(index, t)?);
     }
@@ -72,7 +72,7 @@ impl Earth {
     /// # Errors
     /// The errors of [`Earth::covers`], and [`EarthError::WrongLength`] for arrays of the wrong length.
     pub fn to_fixed(&self, times: &[f64], positions: &[f64], fixed: &mut [f64]) -> Result<(), EarthError> {
-        check_length("the positions", positions.len(), 3 * times.len())?;
+        check_length("positions", positions.len(), 3 * times.len())?;
         fill_rows(times, fixed, |k, t| Ok((self.checked_rotation(t)? * row(positions, k)).into()))
     }
 
@@ -88,7 +88,7 @@ impl Earth {
         positions: &[f64],
         coordinates: &mut [f64],
     ) -> Result<(), EarthError> {
-        check_length("the positions", positions.len(), 3 * times.len())?;
+        check_length("positions", positions.len(), 3 * times.len())?;
         fill_rows(times, coordinates, |k, t| {
             let geodetic = Geodetic::of(&(self.checked_rotation(t)? * row(positions, k)), &WGS84)?;
             Ok([geodetic.latitude, geodetic.longitude, geodetic.altitude])

@@ -33,8 +33,8 @@ pub enum EarthError {
     },
     /// A time is outside the span in which a quantity is known.
     #[error(
-        "{what} covers only {from} to {to}, but is requested at t = {time} s after the epoch {epoch}; \
-         choose an epoch for which the whole run lies in this span",
+        "{what} is available only from {from} to {to}, but is required at t = {time} s after the epoch \
+         {epoch}; choose an epoch for which the whole run lies in this span",
         time = short(*time)
     )]
     OutsideSpan {

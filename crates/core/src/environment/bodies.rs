@@ -98,7 +98,7 @@ impl Bodies {
         self.layout.systems()
     }
 
-    /// Returns the centre of mass of the base of a system in `W`, m, or the origin if the system has no body.
+    /// Returns the centre of mass of the base of a system in `W`, m. The system must have a body.
     pub(super) fn base_com(&self, system: &SystemRows) -> Vector3<f64> {
         let first = |block: &BodyBlock| block.motion.com.map(|column| column.get(0)).to_nalgebra();
         self.blocks.get(system.first / WIDTH).map_or_else(Vector3::zeros, first)

@@ -3,9 +3,9 @@
 use super::proximity::Proximity;
 use crate::spatial::{Force, Vec3};
 
-/// Slope between two surfaces above which the shallow side of a patch has no weight. A larger slope widens
-/// the transition: the lever arms that result from changing weights then stay closer to the patch, but small
-/// tilts make a contact softer.
+/// Slope between two surfaces at or above which the shallow side of a patch has no weight. A larger value
+/// widens the transition: the lever arms that result from changing weights then stay closer to the patch, but
+/// small tilts make a contact softer.
 pub(super) const TILT: f64 = 0.02;
 
 /// Pair of opposite points at which two shapes touch, with the gradients of its depth and weight, all in

@@ -22,7 +22,8 @@ const FINAL: f64 = 1e-12;
 const RESOLUTION: f64 = 1e-7;
 
 /// Largest accepted difference between the bounds of the distance, which are the distance between the witness
-/// points and that between the supporting planes, relative to the size of both shapes.
+/// points and that between the supporting planes, relative to the sum of the radii of the bounding spheres
+/// and the distance between their centres.
 const RESOLVED: f64 = 1e-9;
 
 /// Returns the distance between two convex shapes, given the pose of the second in the axes of the first, or,

@@ -173,8 +173,8 @@ fn apart<N: Number>(p: Point<N>, q: Point<N>) -> N {
     (x * x + y * y).sqrt()
 }
 
-/// Returns a polygon without repeated corners and without corners between two collinear edges, whose
-/// positions rounding errors determine.
+/// Returns a polygon without repeated corners and without corners between two collinear edges; rounding
+/// errors would determine the positions of such corners.
 fn simplified<N: Number>(mut corners: Vec<Point<N>>) -> Vec<Point<N>> {
     let perimeter = perimeter(&corners).value();
     let is_same = |p: Point<N>, q: Point<N>| apart(p, q).value() <= SAME * perimeter;

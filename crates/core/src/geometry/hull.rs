@@ -33,8 +33,8 @@ impl Hull {
     /// Returns the convex hull of points, m.
     ///
     /// # Errors
-    /// [`GeometryError::Hull`] if a coordinate is not finite, or if the points lie in a plane or are too
-    /// close to each other.
+    /// [`GeometryError::Hull`] for fewer than four points, if a coordinate is not finite or too large, or if
+    /// the points lie in a plane or are too close to each other.
     pub fn new(points: &[Vec3<f64>]) -> Result<Self, GeometryError> {
         let failed = |cause| GeometryError::Hull { count: points.len(), cause };
         if points.iter().any(|p| !p.norm().is_finite()) {
@@ -179,8 +179,8 @@ fn grown(points: &[Vec3<f64>], first: [usize; 4], tolerance: f64) -> Option<Poly
     Some(polytope)
 }
 
-/// Assigns each of the points `loose` (indices) to the first triangle, from index `first` on, whose plane it
-/// is above by more than `tolerance`, m. Other points are dropped.
+/// Assigns each of the points `loose` (indices) to the first triangle, from index `first` on, above whose
+/// plane it lies by more than `tolerance`, m. Points without such a triangle are dropped.
 fn assign(
     polytope: &Polytope,
     points: &[Vec3<f64>],

@@ -37,8 +37,7 @@ use std::borrow::Cow;
 pub struct Manifold {
     /// Distance, witness points and normal of the shapes.
     pub proximity: Proximity,
-    /// Contact points with positive weights: 1 to 8 for the usual shapes, more between faces with many
-    /// corners.
+    /// Contact points, at least one, with positive weights.
     pub points: Vec<ContactPoint>,
 }
 

@@ -15,9 +15,10 @@ pub struct Mesh {
 /// Defect of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MeshDefect {
-    /// Open surface: some edges do not belong to exactly two triangles of opposite orientation.
+    /// Open or inconsistently oriented surface: some edges do not join exactly two triangles of the same
+    /// orientation.
     Open {
-        /// Number of edges that do not join two triangles.
+        /// Number of edges that do not join exactly two triangles of the same orientation.
         edges: usize,
     },
     /// The normals point inwards.
@@ -27,9 +28,9 @@ pub enum MeshDefect {
 impl std::fmt::Display for MeshDefect {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::Open { edges: 1 } => f.write_str("is open (1 edge does not join two triangles)"),
-            Self::Open { edges } => write!(f, "is open ({edges} edges do not join two triangles)"),
-            Self::InsideOut => f.write_str("is inside out (its normals point to the inside)"),
+            Self::Open { edges: 1 } => f.write_str("is open or inconsistently oriented at 1 edge"),
+            Self::Open { edges } => write!(f, "is open or inconsistently oriented at {edges} edges"),
+            Self::InsideOut => f.write_str("is inside out (its normals point inwards)"),
         }
     }
 }

@@ -18,7 +18,7 @@ const STL_TRIANGLE: usize = 50;
 pub(super) fn read_mesh(path: &Path) -> Result<Mesh, String> {
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
     if !matches!(ending.as_str(), "stl" | "obj") {
-        return Err("the file name must end in .stl or .obj; convert the mesh to one of them".to_owned());
+        return Err("the file name must end in .stl or .obj; convert the mesh to STL or OBJ".to_owned());
     }
     let bytes = read_bytes(path, LARGEST).map_err(|error| error.to_string())?;
     let mesh = match ending.as_str() {
@@ -30,7 +30,7 @@ pub(super) fn read_mesh(path: &Path) -> Result<Mesh, String> {
         return Err("the file has no triangles; export the mesh again".to_owned());
     }
     if mesh.vertices.iter().any(|p| !p.norm().is_finite()) {
-        return Err("a coordinate of a vertex is infinite or NaN; export the mesh again".to_owned());
+        return Err("a vertex coordinate is infinite, NaN or too large; export the mesh again".to_owned());
     }
     Ok(mesh)
 }

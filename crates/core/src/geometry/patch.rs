@@ -73,8 +73,8 @@ fn length(corners: &[Point], i: usize) -> f64 {
 }
 
 /// Returns the weights of the corners of the common part of a line and a face from the depths at the
-/// corners, m. The weights sum to 1. If the depths are equal, they are those of [`weights`]; as the slope
-/// approaches [`TILT`], the weight passes to the deepest edge and corner.
+/// corners, m. The weights sum to 1. If the depths are equal, the weights are those of [`weights`]; as the
+/// slope approaches [`TILT`], the weight passes to the deepest edge and corner.
 fn tilted_weights(corners: &[Point], depths: &[f64]) -> Vec<f64> {
     let extent = extent(corners, |i| depths[i]);
     let band = TILT * extent;

@@ -29,7 +29,7 @@ impl Segment {
 }
 
 /// Returns the nearest points of two segments and the unit normal from the first to the second. For parallel
-/// segments, the points lie in the middle of the common part; for segments that intersect, the normal is
+/// segments with a common part, the points lie in its middle; for segments that intersect, the normal is
 /// perpendicular to both.
 pub(super) fn nearest(a: Segment, b: Segment) -> (Vec3<f64>, Vec3<f64>, Vec3<f64>) {
     let (on_a, on_b) = nearest_points(a, b);

@@ -60,8 +60,8 @@ impl Shape {
     /// Returns the convex hull of points, m.
     ///
     /// # Errors
-    /// [`GeometryError`] if a coordinate is not finite, or if the points lie in a plane or are too close to
-    /// each other.
+    /// [`GeometryError::Hull`] for fewer than four points, if a coordinate is not finite or too large, or if
+    /// the points lie in a plane or are too close to each other.
     pub fn hull(points: &[Vec3<f64>]) -> Result<Self, GeometryError> {
         Hull::new(points).map(|hull| Self::Hull(Arc::new(hull)))
     }

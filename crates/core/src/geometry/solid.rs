@@ -26,16 +26,16 @@ impl Solid {
     /// Reads a mesh file and scales the mesh along its axes by the factors `x`, `y` and `z`.
     ///
     /// # Errors
-    /// The reason, as text, why the file does not describe a solid: it cannot be read, its surface is open,
-    /// or it has no volume.
+    /// The reason, as text, why the file does not describe a solid: it cannot be read, its surface is open
+    /// or inconsistently oriented, or it has no volume.
     pub fn read(filename: &str, [x, y, z]: [f64; 3]) -> Result<Self, String> {
         let mut mesh =
             read_mesh(Path::new(filename)).map_err(|cause| format!("{filename}: {cause}"))?.joined();
         let defect = mesh.defect();
         if let Some(open @ MeshDefect::Open { .. }) = defect {
             return Err(format!(
-                "the collision mesh {filename} {open}, so it has no inside that convex pieces could fill; close the mesh, \
-                 or omit 'pieces' to use its convex hull"
+                "the collision mesh {filename} {open}, so it has no inside that convex pieces could fill; \
+                 repair the mesh, or omit 'pieces' to use its convex hull"
             ));
         }
         mesh.vertices.iter_mut().for_each(|p| *p = Vec3::new(x * p.x, y * p.y, z * p.z));
@@ -88,6 +88,6 @@ mod tests {
             assert!((solid.hull.volume() - volume).abs() < 1e-15 && solid.is_convex());
             assert!(solid.excess(std::slice::from_ref(&solid.hull)).abs() < 1e-15);
         }
-        fs::remove_file(file).expect("the file is ours");
+        fs::remove_file(file).expect("the temporary file can be removed");
     }
 }

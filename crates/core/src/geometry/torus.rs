@@ -37,13 +37,13 @@ struct Sample {
 /// sphere, the axis of a capsule, the middle circle of a torus, or the entire shape for other kinds), because the
 /// shortest separating translation is then not determined by a single point.
 ///
-/// # Errors
-/// The difference between the bounds, m, of the distance of a hull that does not converge; NaN if no normal
-/// was found.
-///
 /// The distance along the circle may have several minima. Each interval between neighbouring samples that
 /// contains a minimum is bisected to find the angle at which the rate `nᵀ t` of the distance changes sign,
 /// with the normal `n` and the unit tangent `t` of the circle.
+///
+/// # Errors
+/// The difference between the bounds, m, of the distance of a hull that does not converge; NaN if no normal
+/// was found.
 pub(super) fn closest(a: &Shape, torus: (f64, f64), pose: &Pose) -> Result<Option<Proximity>, f64> {
     let (major_radius, minor_radius) = torus;
     let at = |angle: f64| sample(a, major_radius, pose, angle);

@@ -128,7 +128,7 @@ impl Header {
             )?,
             radius: real("radius", value("radius"))?,
             degree: index_of(degree.as_ref())
-                .ok_or_else(|| invalid("max_degree", degree, "a whole number"))?,
+                .ok_or_else(|| invalid("max_degree", degree, "a non-negative whole number"))?,
             words: match errors {
                 "no" => 5,
                 "calibrated_and_formal" => 9,
@@ -139,7 +139,7 @@ impl Header {
     }
 }
 
-/// Parses a degree or an order; returns `None` if it is missing or not a whole number.
+/// Parses a degree or an order; returns `None` if it is missing or not a non-negative whole number.
 fn index_of(word: Option<&&str>) -> Option<usize> {
     word?.parse().ok()
 }

@@ -6,8 +6,8 @@ use nalgebra::{Matrix3, Vector3};
 /// Returns the acceleration `g = -μ r / |r|³`, m/s², of a point mass with the gravitational parameter `μ`
 /// (`mu`), m³/s², at position `r`, m, in the axes of `r`.
 ///
-/// All code uses this function, so that the residual acceleration of a reference in free fall is exactly
-/// zero.
+/// Orbits and effects both use this function, so that the residual acceleration of a reference in free fall
+/// is exactly zero.
 pub(crate) fn point_mass(mu: f64, r: &Vector3<f64>) -> Vector3<f64> {
     let r2 = r.norm_squared();
     // g = -μ r / |r|³

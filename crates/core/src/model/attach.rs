@@ -33,8 +33,8 @@ impl Model {
     /// fixed to the base; otherwise they follow directly after the joints below the body of `frame`.
     ///
     /// # Errors
-    /// [`ModelError`] for an unknown frame, a name that both robots have, or too many joints, and the errors
-    /// of [`ModelBuilder::build`].
+    /// [`ModelError`] for an unknown frame, a name that both robots have, too many joints, or an invalid
+    /// joint of `mount`, and the errors of [`ModelBuilder::build`].
     pub fn attach(&self, frame: &str, other: &Self, mount: &Mount) -> Result<Self, ModelError> {
         let carrier = &self.frames[self.frame(frame)?];
         // `other` is attached to the link that names the body, so that its joints follow those already below

@@ -12,7 +12,7 @@ impl ModelBuilder {
     ///
     /// # Errors
     /// [`ModelError`] for an unknown frame, a loop that connects a frame with itself, an empty name, the name
-    /// of another loop, a pose that is not finite, or a length outside 1e-6 m to 1e12 m.
+    /// of another loop, a pose that is not finite, or a length outside [1e-6 m, 1e12 m).
     pub fn close(&mut self, closing: Loop) -> Result<&mut Self, ModelError> {
         let names = self.description.links.iter().map(|link| link.name.as_str());
         let names = names.chain(self.description.frames.iter().map(|(name, ..)| name.as_str()));
@@ -34,7 +34,7 @@ impl ModelBuilder {
             return Err(ModelError::NotFinite { what: "a pose", name: name() });
         }
         if let Some(length) = closing.length.filter(|length| !(SHORTEST..1e12).contains(length)) {
-            let expected = "1e-6 m to 1e12 m, or the kind 'spherical' for a distance of zero";
+            let expected = "at least 1e-6 m and below 1e12 m, or the kind 'spherical' for a distance of zero";
             return Err(ModelError::OutOfRange { what: "the length", name: name(), value: length, expected });
         }
         self.description.loops.push(closing);

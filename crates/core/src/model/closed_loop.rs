@@ -20,7 +20,7 @@ pub struct Loop {
     /// Pose of the joint in each of the two frames. The axis of the joint is the z axis of these poses.
     pub poses: [Isometry3<f64>; 2],
     /// Distance between the two origins for [`LoopKind::Distance`], m; `None` means the distance at zero
-    /// joint positions. Other kinds ignore the length.
+    /// joint positions. Other kinds do not use the length, but it is checked for them as well.
     pub length: Option<f64>,
     /// True if the start configuration of a simulation is moved to the nearest one that closes the loop. If
     /// false, a start configuration that does not close the loop is an error.

@@ -82,7 +82,7 @@ impl Model {
         }
         let (what, expected) = (
             "the length",
-            "a given length of at least 1e-6 m, because the frames coincide at zero joint positions",
+            "at least 1e-6 m between the frames at zero joint positions, or a given length",
         );
         Err(ModelError::OutOfRange { what, name: name.to_owned(), value: length, expected })
     }

@@ -7,8 +7,8 @@ use super::{Orbit, OrbitError, OrbitState, PathFrame};
 
 /// Frame at rest in the inertial frame `I`, such as a laboratory or a frame far from all bodies.
 ///
-/// The frame is not in free fall: around a planet, gravity accelerates the robot relative to the frame,
-/// except with `gravity_mode` `carried`.
+/// The frame is not in free fall: around a planet, gravity accelerates the robot relative to the frame. With
+/// `gravity_mode` `carried`, only the tidal part of gravity does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FixedFrame {
     position: Vector3<f64>,

@@ -45,7 +45,7 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
     /// evaluate several instants at once on SIMD lanes.
     ///
     /// # Errors
-    /// [`OrbitError::WrongLength`] if `rows` does not have one row per time; otherwise the error of
+    /// [`OrbitError::WrongRows`] if `rows` does not have one row per time; otherwise the error of
     /// [`Orbit::position_velocity`] at the first instant for which it returns one.
     fn fill(&self, times: &[f64], rows: StateRows<'_>) -> Result<(), OrbitError> {
         fill_each(self, times, rows)

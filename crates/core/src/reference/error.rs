@@ -80,5 +80,5 @@ pub(super) fn check_numbers<'a>(
     }
 }
 
-/// Shortest accepted duration of a motion, s; rates of shorter motions overflow.
+/// Shortest accepted duration of a motion, s. It keeps rates and accelerations far below the overflow limit.
 pub(super) const SHORTEST: f64 = 1e-12;

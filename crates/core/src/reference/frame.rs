@@ -24,7 +24,7 @@ pub enum ReferenceFrame {
 }
 
 /// Frame of another system of a world. Before each evaluation of references, the simulation sets the motion
-/// of the frame, which all copies share.
+/// of the frame; all copies of this value share it.
 #[derive(Clone, Debug)]
 pub struct MovingFrame {
     /// Index of the system in the world.

@@ -75,7 +75,7 @@ impl TaskLimits {
     }
 
     /// Returns the factor by which the duration of `path` must be multiplied to respect the limits; it is
-    /// below 1 for a path that may be faster. The path is smooth between successive `times`, s.
+    /// below 1 for a path that may be faster. The path must be smooth between successive `times`, s.
     pub fn stretch(&self, path: &dyn TaskPath, times: &[f64]) -> f64 {
         let peak = instants(times).map(|t| path.sample(t)).fold(0.0, |peak: f64, now| {
             let (v, a) = (now.velocity, now.acceleration);
@@ -98,7 +98,8 @@ pub(super) fn check_joint_limits(limits: &[RateLimit]) -> Result<(), ReferenceEr
 }
 
 /// Returns the factor by which the duration of `path` must be multiplied so that all joints respect their
-/// limits; it is below 1 for a path that may be faster. The path is smooth between successive `times`, s.
+/// limits; it is below 1 for a path that may be faster. The path must be smooth between successive `times`,
+/// s.
 pub(super) fn joint_stretch(limits: &[RateLimit], path: &dyn JointPath, times: &[f64]) -> f64 {
     let mut now = JointSample::new(path.count());
     let mut peak = 0.0_f64;

@@ -40,9 +40,10 @@ impl TaskSample<f64> {
     /// Returns the motion of a frame whose motion relative to the frame of `self` is `inner`.
     ///
     /// `p = p_f + R x`, `v = v_f + ω × Rx + R ẋ`, `a = a_f + α × Rx + ω × (ω × Rx) + 2 ω × R ẋ + R ẍ`;
-    /// angular velocity `ω + R ω'` and angular acceleration `α + ω × R ω' + R α'`. The position `x`, `ω'` and
-    /// `α'` belong to `inner`, the other symbols to `self`: position `p_f`, rotation `R`, velocity `v_f`,
-    /// acceleration `a_f`, angular velocity `ω` and angular acceleration `α`.
+    /// angular velocity `ω + R ω'` and angular acceleration `α + ω × R ω' + R α'`. The position `x`, its
+    /// derivatives `ẋ` and `ẍ`, and `ω'` and `α'` belong to `inner`, the other symbols to `self`: position
+    /// `p_f`, rotation `R`, velocity `v_f`, acceleration `a_f`, angular velocity `ω` and angular acceleration
+    /// `α`.
     #[must_use]
     pub fn carry(&self, inner: &Self) -> Self {
         let (r, w, alpha) = (&self.rot_wd, self.velocity.angular, self.acceleration.angular);

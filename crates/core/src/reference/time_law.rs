@@ -45,7 +45,7 @@ impl TimeLaw {
     /// # Errors
     /// [`ReferenceError::LimitNotPositive`] for an invalid limit, [`ReferenceError::Ramp`] for an invalid
     /// ramp, [`ReferenceError::NoLimit`] if the limits do not determine the duration, and
-    /// [`ReferenceError::NotFinite`] if a limit is so small that the duration overflows.
+    /// [`ReferenceError::NotFinite`] if a limit is so small that the duration exceeds 1e60 s.
     pub fn within<P: TaskPath>(
         limits: &TaskLimits,
         ramp: Option<f64>,

@@ -28,8 +28,9 @@ impl Simulation {
     /// Checks the fingers of every grip-force law.
     ///
     /// # Errors
-    /// [`ControlError::NothingOpposes`] if no finger approaches another link that touches the same object,
-    /// and [`ControlError::TooWide`] if each shape of an object is wider than the largest opening.
+    /// [`ControlError::NothingOpposes`] if no finger approaches another link of the robot that has a contact
+    /// with a compliant normal force, and [`ControlError::TooWide`] if each shape of an object is wider than
+    /// the largest opening.
     pub(super) fn check_grips(&self, system: &System) -> Result<(), SimulationError> {
         for control in &system.controls {
             if let Some(law) = control.law.grip() {
@@ -190,8 +191,9 @@ impl<'a> Gripper<'a> {
         rates
     }
 
-    /// Returns the configuration of the open gripper; `None` if a joint has no limit in the opening
-    /// direction. Closed loops end the opening motion at the first limit that a joint reaches.
+    /// Returns the configuration of the open gripper, in which each joint that closes it is at its
+    /// limit or, with closed loops, the first joint reaches its limit; `None` if such a joint has no limits or,
+    /// with closed loops, if no joint reaches a limit.
     fn opened(&mut self, rates: &[f64]) -> Option<Vec<f64>> {
         let model = &*self.system.model;
         let limit = |j: usize, rate: f64| {

@@ -85,10 +85,10 @@ fn difference_of_columns(got: &[String], expected: &[String]) -> String {
     };
     match (missing_in(got, expected).as_str(), missing_in(expected, got).as_str()) {
         ("", "") => "the order of its columns differs from that in this simulation".to_owned(),
-        (extra, "") => format!("it has the columns {extra}, which this simulation does not have"),
-        ("", lacks) => format!("it lacks the columns {lacks} of this simulation"),
+        (extra, "") => format!("its rows contain {extra}, which this simulation does not record"),
+        ("", lacks) => format!("its rows lack {lacks}, which this simulation records"),
         (extra, lacks) => {
-            format!("it has the columns {extra}, where this simulation has the columns {lacks}")
+            format!("its rows contain {extra}, whereas this simulation records {lacks}")
         }
     }
 }

@@ -83,9 +83,9 @@ impl<'a> Stepper<'a> {
     /// output or by a shorter trial step, and the step itself is computed in a later advance.
     ///
     /// # Errors
-    /// [`SimulationError::NotPositive`], [`SimulationError::PastTime`] and [`SimulationError::AfterEnd`] for
-    /// an invalid `t`, [`SimulationError::Earth`] if the orientation data of the Earth do not cover `t`, and
-    /// [`SimulationError::Ended`] if the run has ended; the run does not change. Any other error, such as
+    /// [`SimulationError::TimeNotFinite`], [`SimulationError::PastTime`] and [`SimulationError::AfterEnd`]
+    /// for an invalid `t`, [`SimulationError::Earth`] if the orientation data of the Earth do not cover `t`,
+    /// and [`SimulationError::Ended`] if the run has ended; the run does not change. Any other error, such as
     /// [`SimulationError::Diverged`], ends the run.
     pub fn advance_to(&mut self, t: f64) -> Result<(), SimulationError> {
         self.advance_until(t, &mut |_| ControlFlow::Continue(())).map(|_| ())
@@ -182,8 +182,8 @@ impl<'a> Stepper<'a> {
     /// Removes the recorded rows of each system except the first one and the last `keep`, which limits the
     /// memory of a long run. The motion does not change.
     ///
-    /// The run cannot be resumed from a later checkpoint, since rows are missing. The checks of the
-    /// certificate that compare successive steps are then omitted, unless they are evaluated during the run.
+    /// A later checkpoint can be resumed only together with the removed rows. The certificate omits the
+    /// checks that compare successive steps, unless they are evaluated during the run.
     pub fn drop_rows(&mut self, keep: usize) {
         self.groups.iter_mut().for_each(|group| group.run.drop_rows(keep, false));
     }

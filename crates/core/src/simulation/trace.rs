@@ -52,7 +52,7 @@ macro_rules! define_trace {
             pub pair_checks: Option<PairChecks>,
             /// True if the rows are sufficient for the checks that compare successive steps: every step of a
             /// fixed-step run is recorded and, unless an external engine moves the system, its group has
-            /// neither events nor contacts with friction.
+            /// neither events nor contacts with friction. False once unchecked rows were removed.
             pub rows_suffice: bool,
             /// Checks of the rows that were removed during the run; `None` if no rows were removed, or if
             /// they were not checked.

@@ -270,7 +270,8 @@ impl<'a, S: Real> Tree<'a, S> {
         }
     }
 
-    /// Writes the power that friction dissipates in the joints at the velocity `v` to `rate`.
+    /// Writes the power that damping, friction and brakes dissipate in the joints at the velocity `v` to
+    /// `rate`.
     #[inline(never)]
     fn losses(&self, v: &[S], rate: &mut TreeRate<S>) {
         let Self { model, modes, shares, .. } = self;

@@ -21,7 +21,8 @@ pub(super) fn has_avx512() -> bool {
     has(AVX512)
 }
 
-/// Returns true if the processor has a feature. Every kernel asks, so a known feature costs two instructions.
+/// Returns true if the processor has a feature. Because every kernel calls this function, it takes only two
+/// instructions for a feature that is known to be present.
 #[inline(always)]
 fn has(feature: u8) -> bool {
     FEATURES.load(Ordering::Relaxed) & feature != 0 || has_detected(feature)

@@ -144,7 +144,7 @@ impl Real for Fused {
     fn enter<R>(kernel: impl FnOnce() -> R) -> R {
         #[cfg(target_arch = "x86_64")]
         {
-            assert!(Self::is_available(), "fused kernels entered on a processor without AVX2 and FMA");
+            assert!(Self::is_available(), "fused kernels require a processor with AVX2 and FMA");
             // SAFETY: the assertion above guarantees that the processor has both features.
             unsafe { enter_fused(kernel) }
         }

@@ -217,8 +217,8 @@ pub(super) fn check_times(times: &[f64]) -> Result<(), SplineError> {
     }
 }
 
-/// Checks that there are `points` rows of `width` numbers, at least one, which are finite and at most 1e60 in
-/// magnitude.
+/// Checks that `width` is not zero and that there are `points` rows of `width` numbers, which are finite and
+/// at most 1e60 in magnitude.
 pub(super) fn check_rows(
     name: &'static str,
     rows: &[f64],

@@ -75,7 +75,7 @@ pub fn connected_velocity(
 
 /// Returns, for each closed loop of a tree at `q`, its name and its impulse on the body of its second frame,
 /// N s and N m s, in the axes of W. The angular part is about the point at which the loop is attached to that
-/// frame. `loops` are those of [`connected_velocity`].
+/// frame. Mimic joints are included, with an impulse of zero. `loops` are those of [`connected_velocity`].
 pub fn loop_impulses(tree: &Model, q: &[f64], loops: &ClosedLoops<f64>) -> Vec<(String, [f64; 6])> {
     let (mut data, rot_wb) = (Data::<f64>::new(tree), base_rotation::<f64>(q));
     positions(tree, &mut data, q);

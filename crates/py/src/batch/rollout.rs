@@ -62,7 +62,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 ///     If the motion diverges.
 /// ControlError
 ///     If only one of ``controller`` and ``reference`` is given, if ``tau`` is given as well, if the
-///     controller is of another kind or for another robot, or if the reference is in the frame ``"lvlh"``.
+///     controller is of another kind or for another robot, or if the reference is in the frame ``"lvlh"`` or
+///     in a frame of another system.
 /// InputError, ShapeError
 ///     If a number is invalid, the integrator is not one of those listed, an initial state opens a loop that
 ///     has ``project=False`` or that cannot be closed, or an array has the wrong shape.

@@ -42,7 +42,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// Raises
 /// ------
 /// ControlError, ShapeError
-///     If a gain or the timeout is invalid, or ``on_timeout`` requires a gain that is zero.
+///     If a gain, the timeout or ``on_timeout`` is invalid, ``on_timeout`` requires a gain that is zero, or a
+///     gain has the wrong shape.
 #[pyclass(name = "External", frozen, module = "onorbit_rs")]
 pub(crate) struct PyExternal {
     law: External,

@@ -46,6 +46,8 @@ use std::path::PathBuf;
 /// ModelError
 ///     If a link, joint, frame or loop of one robot has the same name as one of the other, the pose is
 ///     invalid, or the file of ``other`` does not describe a valid robot.
+/// InputError, ShapeError
+///     If ``pose`` is not finite or has the wrong shape.
 /// NotFoundError, ReadError
 ///     If the file of ``other`` does not exist or cannot be read.
 #[pyfunction]

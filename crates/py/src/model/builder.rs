@@ -28,6 +28,8 @@ use pyo3::prelude::*;
 /// ------
 /// ModelError
 ///     If ``com`` or ``inertia`` is given without ``mass``, or a value is invalid.
+/// InputError, ShapeError
+///     If an array is not finite or has the wrong shape.
 #[pyclass(name = "ModelBuilder", module = "onorbit_rs")]
 pub(crate) struct PyModelBuilder {
     builder: ModelBuilder,
@@ -109,6 +111,8 @@ impl PyModelBuilder {
     ///     If the parent does not exist.
     /// ModelError
     ///     If the name is already used, or a value is invalid.
+    /// InputError, ShapeError
+    ///     If an array is not finite or has the wrong shape.
     #[pyo3(signature = (
         name, *, parent, joint, kind="revolute", axis=None, xyz=None, rpy=None, mass=None, com=None, inertia=None,
         damping=0.0, friction=0.0, rotor_inertia=0.0, lower=None, upper=None, velocity=None, effort=None,
@@ -184,6 +188,8 @@ impl PyModelBuilder {
     ///     If the link does not exist.
     /// ModelError
     ///     If the name is already used, or a value is invalid.
+    /// InputError, ShapeError
+    ///     If an array is not finite or has the wrong shape.
     #[pyo3(signature = (name, link, *, xyz=None, rpy=None))]
     fn add_frame(
         &mut self,

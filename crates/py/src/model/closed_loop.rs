@@ -46,6 +46,8 @@ const KINDS: [(&str, LoopKind); 5] = [
 /// ------
 /// ModelError
 ///     If the kind is unknown, a pose is invalid, or a length is given with a kind other than ``distance``.
+/// InputError, ShapeError
+///     If a pose is not finite or has the wrong shape.
 #[pyclass(name = "Loop", frozen, module = "onorbit_rs", eq)]
 #[derive(Clone, PartialEq)]
 pub(crate) struct PyLoop {

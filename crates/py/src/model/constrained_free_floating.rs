@@ -127,7 +127,8 @@ impl PyModel {
             (true, false) => format!("they do not determine the motion of {}", missing.join(", ")),
         };
         let message = format!(
-            "the joints in 'independent' are not a set of independent joints: {problem}; a valid choice is {}",
+            "the joints in 'independent' are not a set of independent joints: {problem}; a valid choice \
+             is [{}]",
             names(&mut independent.iter()).join(", ")
         );
         Err(raise(py, "ModelError", &message, &fields!(py, "name": "independent")))

@@ -41,6 +41,8 @@ impl PyModel {
     /// ModelError
     ///     If the file does not describe a valid robot, ``links`` is invalid, or PyPI's ``xacro`` is required
     ///     but not installed.
+    /// InputError, ShapeError
+    ///     If a ``com`` or ``inertia`` in ``links`` is not finite or has the wrong shape.
     /// NotFoundError, ReadError
     ///     If the file does not exist or cannot be read.
     #[staticmethod]
@@ -107,6 +109,8 @@ impl PyModel {
     /// ------
     /// ModelError
     ///     If the mass or the inertia is not physical.
+    /// InputError, ShapeError
+    ///     If ``inertia`` is not finite or has the wrong shape.
     #[staticmethod]
     fn rigid_body(py: Python<'_>, mass: f64, inertia: Any<'_, '_>) -> PyResult<Self> {
         builder::rigid_body(py, mass, inertia)
@@ -137,6 +141,8 @@ impl PyModel {
     ///     If no link has this name.
     /// ModelError
     ///     If the values are not physical, or if the link has no inertial properties and no mass is given.
+    /// InputError, ShapeError
+    ///     If an array is not finite or has the wrong shape.
     #[pyo3(signature = (name, *, mass=None, com=None, inertia=None))]
     fn with_link(
         slf: &Bound<'_, Self>,
@@ -337,8 +343,8 @@ impl PyModel {
         match &slf.get().constructor_call {
             Some(call) => call.reduce_robot(slf),
             None => Err(PyTypeError::new_err(
-                "a model built link by link cannot be pickled; build it in the process that uses it, or \
-                 write it as URDF and load the file",
+                "a model built link by link or returned by Simulation.models cannot be pickled; build it in \
+                 the process that uses it, or write it as URDF and load the file",
             )),
         }
     }

@@ -148,7 +148,7 @@ impl PyModel {
     /// Raises
     /// ------
     /// ConvergenceError
-    ///     If the loops cannot all be closed near ``q``.
+    ///     If the loops cannot all be closed near ``q``, or a mimic joint cannot follow its leader there.
     /// InputError, ShapeError
     ///     If ``q`` is not finite, its quaternion is not a unit quaternion, or its shape is wrong.
     fn closed_configuration<'py>(&self, q: Any<'_, 'py>) -> PyResult<Array<'py>> {
@@ -168,8 +168,8 @@ impl PyModel {
             return Ok(array_of(py, &[closed.len()], &closed));
         }
         let message = format!(
-            "the loops cannot all be closed near this configuration: {}; check the poses and lengths of these \
-             loops, or start closer to a configuration that closes them",
+            "the loops cannot all be closed near this configuration: {}; check the poses and lengths of the \
+             loops and the ratios and offsets of mimic joints, or start closer to a closed configuration",
             open.join(", ")
         );
         Err(raise(py, "ConvergenceError", &message, &fields!(py,)))

@@ -29,7 +29,7 @@ impl PyRobotPart {
     ///
     /// Raises
     /// ------
-    /// ModelError, NotFoundError, ReadError
+    /// ModelError, InputError, ShapeError, NotFoundError, ReadError
     ///     As for :meth:`Model.from_urdf`.
     #[staticmethod]
     #[pyo3(signature = (path, *, package_paths=None, xacro_arguments=None, xacro=false, links=None))]

@@ -40,8 +40,8 @@ use std::sync::Arc;
 /// Raises
 /// ------
 /// OrbitError
-///     If an effect is not gravity, or the orbit begins inside the planet. The methods raise this error at
-///     times at which the orbit is inside the planet.
+///     If an effect is not gravity, ``mu`` is not positive, or the orbit begins inside the planet. The
+///     methods raise this error at times at which the orbit is inside the planet.
 /// GravityError, EarthError
 ///     If the gravity effects contradict each other or ``mu``, or if they require an ``earth`` or an epoch.
 /// InputError, ShapeError

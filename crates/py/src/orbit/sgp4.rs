@@ -33,9 +33,10 @@ use std::sync::Arc;
 /// Raises
 /// ------
 /// ElementSetError
-///     If a line does not have 69 valid columns or its checksum is wrong (the message names line and column),
-///     if the lines belong to two satellites, or if an element is out of range; also for a ``Satrec`` with
-///     other gravity constants, or in AFSPC mode unless ``propagator`` is ``reference``.
+///     If a line does not have 69 valid columns or its checksum is wrong (the message names the line and, if
+///     its length is right, the column), if the lines belong to two satellites, or if an element is out of
+///     range; also for a ``Satrec`` with other gravity constants, or in AFSPC mode unless ``propagator`` is
+///     ``reference``.
 /// Sgp4Error
 ///     If SGP4 rejects an element set or a time; ``code`` is the error code.
 /// InputError

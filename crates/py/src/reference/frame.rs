@@ -5,6 +5,7 @@ use crate::arrays::vector;
 use crate::errors::{IntoPython, fields, raise};
 use crate::pickling::{ConstructorCall, Reduced, call_of};
 use onorbit_core::model::Model;
+use onorbit_core::number_text::names;
 use onorbit_core::orbit::Orbit;
 use onorbit_core::reference::{MovingFrame, ReferenceFrame, Target};
 use pyo3::prelude::*;
@@ -132,10 +133,10 @@ pub(crate) fn moving_frame(
     let Some(system) = systems.iter().position(|(known, _)| known == name) else {
         let known: Vec<&str> = systems.iter().map(|(name, _)| name.as_str()).collect();
         let reason = if known.is_empty() {
-            "the run has only one robot; simulate a World that contains this system, or use no other system"
+            "the run has only one robot; simulate a World that contains this system, or omit the frame"
                 .to_owned()
         } else {
-            format!("no system of the world is named '{name}'; the systems are: {}", known.join(", "))
+            format!("no system of the world is named '{name}'; {}", names(&known, "system"))
         };
         let message = format!("{what} the frame '{path}' of another system, but {reason}");
         return Err(raise(py, "ControlError", &message, &fields!(py, "name": "frame", "got": path)));

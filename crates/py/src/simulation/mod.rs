@@ -33,8 +33,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// ----------
 /// model : Model or World
 ///     Robot, or a world of systems. Because a world has its own initial states, environment and controllers,
-///     only ``time_step``, ``integrator``, ``tolerance``, ``record_every`` and ``record_wrenches`` may be
-///     given with it.
+///     only ``time_step``, ``integrator``, ``tolerance``, ``record_every``, ``record_wrenches`` and ``engine``
+///     may be given with it.
 /// q : (nq,) array, optional
 ///     Initial configuration, m and rad; required for a robot.
 /// v : (nv,) array, optional

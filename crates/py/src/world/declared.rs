@@ -15,7 +15,7 @@ use crate::pickling::{ConstructorCall, Reduced};
 use crate::reference::Around;
 use crate::simulation::{gravity_mode_named, set_environment};
 use onorbit_core::contact::Contact;
-use onorbit_core::number_text::short;
+use onorbit_core::number_text::{names, short};
 use onorbit_core::simulation::Simulation;
 use onorbit_core::world::{System, WorldError, idle_knowledge};
 use pyo3::exceptions::PyUserWarning;
@@ -51,7 +51,7 @@ use std::sync::Arc;
 ///
 /// Raises
 /// ------
-/// WorldError
+/// WorldError, FrameError, ModelError
 ///     If a system, a contact, an event or a loop is invalid.
 /// InputError, OrbitError, EarthError, GravityError, EffectError, ControlError
 ///     If a number, the orbit, the Earth, the environment or a controller is invalid, as for ``Simulation``.
@@ -147,8 +147,7 @@ impl PyWorld {
     pub(crate) fn model_of<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyModel>> {
         let system = self.systems.iter().find(|system| system.get().name == name);
         system.map(|system| system.get().model.bind(py).clone()).ok_or_else(|| {
-            let message =
-                format!("there is no system '{name}'; the systems are: {}", self.names().join(", "));
+            let message = format!("there is no system '{name}'; {}", names(&self.names(), "system"));
             raise(py, "WorldError", &message, &fields!(py, "name": name, "got": name))
         })
     }
@@ -196,7 +195,7 @@ fn known_systems(py: Python<'_>, system: &PySystem, names: &[String]) -> PyResul
             let hint = if others.is_empty() {
                 "there is no other system".to_owned()
             } else {
-                format!("the others are: {others}")
+                format!("choose from: {others}")
             };
             let message = format!(
                 "the system '{}' knows '{known}', which is not another system of the world; {hint}",

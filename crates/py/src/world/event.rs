@@ -6,7 +6,7 @@ use crate::errors::{IntoPython, fields, raise};
 use crate::model::attach::isometry;
 use crate::pickling::{ConstructorCall, Reduced, deep_copy};
 use onorbit_core::model::Model;
-use onorbit_core::number_text::names;
+use onorbit_core::number_text::{self, names};
 use onorbit_core::world::{Action, Envelope, Event, FrameIndex, Seat, When};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -81,8 +81,8 @@ impl Condition {
 fn event_named(py: Python<'_>, name: &str, other: &str, names: &[String]) -> PyResult<usize> {
     names.iter().position(|known| known == other).ok_or_else(|| {
         let message = format!(
-            "the event '{name}' refers to the unknown event '{other}'; the events are: {}",
-            names.join(", ")
+            "the event '{name}' refers to the unknown event '{other}'; {}",
+            number_text::names(names, "event")
         );
         raise(py, "WorldError", &message, &fields!(py, "name": name, "got": other))
     })

@@ -8,6 +8,7 @@ use crate::stepper::PyStepper;
 use crate::trace::PyTrace;
 use numpy::PyArrayDyn;
 use onorbit_core::model::Model;
+use onorbit_core::number_text;
 use onorbit_core::simulation::{Recording, Simulation, Stepper};
 use pyo3::exceptions::PyAttributeError;
 use pyo3::prelude::*;
@@ -17,7 +18,7 @@ use std::sync::Arc;
 /// Returns the index of the system `name` in `names`; an unknown name is an error.
 pub(super) fn find(py: Python<'_>, names: &[String], name: &str) -> PyResult<usize> {
     names.iter().position(|known| known == name).ok_or_else(|| {
-        let message = format!("there is no system '{name}'; the systems are: {}", names.join(", "));
+        let message = format!("there is no system '{name}'; {}", number_text::names(names, "system"));
         raise(py, "WorldError", &message, &fields!(py, "name": name))
     })
 }

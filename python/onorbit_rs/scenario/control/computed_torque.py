@@ -24,7 +24,7 @@ class ComputedTorqueController(TaskLaw):
     """Gain of the velocity error, 1/s; one number, six numbers, or a 6 x 6 matrix; linear first."""
     damping: Annotated[Number, NotNegative] = 0.05
     """Largest damping of the pseudo-inverse, in the units of the singular values of the generalized Jacobian;
-    the damping is zero unless a singular value is smaller than this number."""
+    the damping is zero unless a lower bound of the smallest singular value is below this number."""
     null_space_damping: Annotated[Rate, NotNegative] = 0.0
     """Damping of joint motion that does not move the tool, 1/s; brings a redundant arm to rest."""
     compensate_environment: bool = True

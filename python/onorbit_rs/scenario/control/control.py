@@ -27,7 +27,10 @@ class TaskGoal(Part):
 
 
 class JointGoal(Part):
-    """Goal of joints: tolerances are position errors, rad or m; one for all joints, or one per joint."""
+    """Goal of joints: tolerances are position errors, rad or m; one for all joints, or one per joint.
+
+    For a PID with interface ``velocity``, they are rate errors, rad/s or m/s, given without a unit.
+    """
 
     tolerance: JointTolerance
     """Tolerance at the end of the reference."""

@@ -23,8 +23,8 @@ def finger_contacts(
 ) -> tuple[tuple[str, ...], ...]:
     """Return the names of the contacts of each finger of a gripper.
 
-    The result is empty if a finger has no contact, or if a contact belongs to several fingers, so that its
-    force does not tell which of them touch.
+    The result is empty if a finger has no contact, or if a contact belongs to several fingers, because its
+    force then does not show which of them touch.
 
     Parameters
     ----------

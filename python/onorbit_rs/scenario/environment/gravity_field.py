@@ -21,7 +21,7 @@ class GravityFieldEffect(Part):
     degree: Annotated[Whole, Field(ge=2)] | None = None
     """Highest degree. Default: 36 for a bundled model, 6 for ``zonal``, the degree of the file for a file."""
     order: Annotated[Whole, Field(ge=0)] | None = None
-    """Highest order. Default: the degree."""
+    """Highest order. Default: the degree, or 0 for ``zonal``."""
 
     @field_serializer("model", when_used="json")
     def _file(self, model: str, info: SerializationInfo) -> str:

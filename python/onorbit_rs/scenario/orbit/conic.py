@@ -33,8 +33,8 @@ class ConicOrbit(Part):
     """Conic that is defined by orbital elements or by a state.
 
     Elements: a size (``semi_major_axis``, negative for a hyperbola, or ``semi_latus_rectum``, required for a
-    parabola), ``eccentricity``, three angles, and one phase. State: ``position`` and ``velocity`` at the
-    start, in inertial axes.
+    parabola), and ``eccentricity``, three angles and one phase, which are zero by default. State:
+    ``position`` and ``velocity`` at the start, in inertial axes.
     """
 
     synonyms: ClassVar = {

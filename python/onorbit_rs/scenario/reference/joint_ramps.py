@@ -30,7 +30,7 @@ class JointMove(Part):
         Raises
         ------
         FrameError
-            If the group does not contain the joint; the message suggests the nearest name.
+            If the group does not contain the joint; the message suggests a similar name, if there is one.
         """
         if self.joint not in group:
             raise FrameError(

@@ -119,7 +119,7 @@ def _module_file(part: UserClass) -> str | None:
 
 
 def _statements(body: list[ast.stmt]) -> Iterator[ast.stmt]:
-    """Yield the statements of a module, including those in ``if``, ``try`` and ``with``."""
+    """Yield the statements of a module and those in ``if``, ``with`` and ``try``, but not in ``except``."""
     for statement in body:
         yield statement
         for inner in ("body", "orelse", "finalbody"):

@@ -44,8 +44,8 @@ def compare(
     Raises
     ------
     CompareError
-        If the systems or the robots' joints differ in number, name or order, or the runs do not overlap in
-        time.
+        If the names of the systems differ, only one run has systems, the robots' joints differ in number,
+        name or order, or the runs do not overlap in time.
     InputError
         If the tolerance is not positive and finite.
     DtypeError

@@ -142,8 +142,8 @@ def _same_robot(a: Recorded, b: Recorded) -> list[str]:
     if names[0] != names[1]:
         joints_a, joints_b = map(", ".join, names)
         raise CompareError(
-            f"the robot of {a.name} has the joints {joints_a}, but that of {b.name} has {joints_b}; only "
-            "runs of the same robot can be compared",
+            f"the names of the joints differ: {joints_a} in {a.name}, and {joints_b} in {b.name}; only runs "
+            "of the same robot can be compared",
             name="robot", got=names[1], expected=names[0],
         )  # fmt: skip
     return notes

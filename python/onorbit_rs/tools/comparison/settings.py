@@ -19,7 +19,7 @@ PARTS = (
     "controllers",
     "reference",
 )
-"""Sections of a scenario that are compared, in addition to steps, integrator, control period and events."""
+"""Sections of a scenario that are compared, besides time step, integrator, control period and events."""
 MOST = 6
 """Largest number of differences that are listed individually."""
 

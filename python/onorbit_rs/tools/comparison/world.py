@@ -95,8 +95,8 @@ def compared_worlds(
     if set(a.systems) != set(b.systems):
         names = [", ".join(world.systems) for world in (a, b)]
         raise CompareError(
-            f"{a.name} has the systems {names[0]}, but {b.name} has the systems {names[1]}; only runs with "
-            "the same systems can be compared",
+            f"the names of the systems differ: {names[0]} in {a.name}, and {names[1]} in {b.name}; only runs "
+            "with the same systems can be compared",
             name="systems", got=names[1], expected=names[0],
         )  # fmt: skip
     systems = {name: compared_robots(own, b.systems[name], tolerance) for name, own in a.systems.items()}

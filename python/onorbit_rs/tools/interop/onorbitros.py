@@ -1,4 +1,4 @@
-"""Converts YAML files of OnOrbitROS to a scenario, with a note on the conversion of every line.
+"""Converts YAML files of OnOrbitROS to a scenario, with notes on the conversion of the lines.
 
 Sources for the file formats and the ROS nodes: github.com/OnOrbitROS/Simulation (``Orbit.cpp``,
 ``orbit_publisher_pkg/config``) and github.com/OnOrbitROS/robot_torso (``talos_control``).
@@ -51,7 +51,7 @@ def convert(
     paths : sequence of paths
         YAML files, and at most one URDF or xacro.
     controller : str, optional
-        Name of the controller to convert, if a file has several. Default: all controllers if they drive
+        Name of the controller to convert, if a file has several. Default: all controllers if they list
         different joints, otherwise the first controller.
     external : bool
         Whether joints with a PID follow commands (``kind: external``) instead of holding their positions.

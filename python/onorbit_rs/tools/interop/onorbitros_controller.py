@@ -47,7 +47,10 @@ def read_task_law(source: Source, law: Location) -> None:
     source.note("end_effector_link", "understood", f"tool: {data['end_effector_link']}")
     source.put((*law, "kind"), "computed_torque", "type")
     if "type" in data:
-        source.note("type", "understood", f"{data['type']} becomes computed torque, the paper's Eq. (6)-(8)")
+        source.note(
+            "type", "understood",
+            f"{data['type']} becomes computed torque, Eq. (6)-(8) of the OnOrbitROS paper",
+        )  # fmt: skip
     _gains(source, law)
     if "joints" in data:
         if not isinstance(data["joints"], list) or not all(isinstance(name, str) for name in data["joints"]):
@@ -79,7 +82,7 @@ def _gains(source: Source, law: Location) -> None:
         source.put((*law, gain), value, key)
         source.note(
             key, "understood",
-            f"{gain} {value:g} {unit}, the paper's gain; "
+            f"{gain} {value:g} {unit}, the gain in the OnOrbitROS paper; "
             "the node of robot_torso uses it as a stiffness (Jᵀ law), so it may need tuning",
         )  # fmt: skip
 

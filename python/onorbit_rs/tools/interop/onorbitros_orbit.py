@@ -80,11 +80,11 @@ def read_orbit(source: Source) -> None:
 def _element(source: Source, name: str, key: str | None) -> float:
     """Return an element in the unit of OnOrbitROS; raise an error for values that suggest another unit."""
     default = DEFAULTS[name]
+    unit = {"semi_major_axis": "km", "eccentricity": ""}.get(name, "rad")
     if key is None:
-        source.note(name, "corrected", f"not given: OnOrbitROS' default, {default:.7g}")
+        source.note(name, "corrected", f"not given: OnOrbitROS' default, {default:.7g} {unit}".rstrip())
         return default
     value = source.number(key)
-    unit = {"semi_major_axis": "km", "eccentricity": ""}.get(name, "rad")
     if name == "semi_major_axis" and not (1e3 < value < 1e6):
         raise source.fail(
             key,
@@ -124,7 +124,7 @@ def _since_perigee(source: Source, a_m: float) -> float:
     if start is None or perigee is None:
         for key in keys:
             source.note(
-                key, "no meaning", "a date is incomplete: OnOrbitROS would use the wall clock instead"
+                key, "no meaning", "a date is missing or incomplete: OnOrbitROS would use the wall clock"
             )
         return 0.0
     seconds = (start - perigee).total_seconds()

@@ -38,7 +38,7 @@ _IDENTITY = np.eye(3)
 
 @dataclass(frozen=True)
 class Approach:
-    """Pose of the target relative to the tool, and the direction from which it approaches."""
+    """Pose of the target relative to the tool, and the direction in which it approaches."""
 
     axis: list[float]
     """Unit vector from the tool to the captured frame, in axes of the tool."""

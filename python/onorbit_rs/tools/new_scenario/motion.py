@@ -37,7 +37,7 @@ def home(model: Model, arm: Arm, weight: Weight | None = None) -> dict[str, floa
     """Return initial positions of the arm's joints, rad or m, rounded to 0.01.
 
     The neutral pose is used if its manipulability, computed from the generalized Jacobian, is high enough,
-    otherwise the best of several random poses. ``weight`` returns the factors (batch,) by which the
+    otherwise the best of many random poses. ``weight`` returns the factors (batch,) by which the
     manipulability of configurations (batch, nq) is multiplied.
     """
     columns = [list(model.joint_names).index(name) for name in arm.joints]

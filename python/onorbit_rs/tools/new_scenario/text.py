@@ -1,4 +1,4 @@
-"""Text of a drafted scenario, with a comment on every section and a unit on every number."""
+"""Text of a drafted scenario, with comments that explain the sections and state the units of numbers."""
 
 from __future__ import annotations
 
@@ -126,7 +126,7 @@ def _note(text: str, items: list[str]) -> str:
     return "".join(f"# {line}\n" for line in lines if items)
 
 
-_EXCEEDING = "The efforts of these joints exceed their limits however slow the motion is"
+_EXCEEDING = "Joints that exceed their effort limits however slow the motion is"
 _FAILED = "All joints are held, since trial runs of arm motions failed"
 
 

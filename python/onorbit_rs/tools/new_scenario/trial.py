@@ -82,7 +82,7 @@ class Trials:
         return reasons
 
     def _slowed(self, plan: Plan, ends: float) -> tuple[float, Plan] | None:
-        """Return the largest base rotation, rad, and the plan slowed down until joint limits are met.
+        """Return the largest base rotation, rad, and the plan, slowed down so that joints keep their limits.
 
         Returns None if no run passes with rates within their limits, in a motion of at most ``SLOWEST_S``.
         Joints that exceed their effort limits at any speed, for example because of friction, are listed in

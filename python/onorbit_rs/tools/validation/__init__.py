@@ -1,6 +1,6 @@
 """Published cases and conservation laws, checked through the public API: ``onorbit validate``.
 
-Each file holds one family of cases in ``CASES``: short tables of numbers with their sources.
+Files with cases list them in ``CASES``: short tables of numbers with their sources.
 """
 
 from __future__ import annotations

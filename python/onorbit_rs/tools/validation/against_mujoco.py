@@ -66,7 +66,7 @@ def mjcf(tree: Tree) -> str:
 
 
 def tree_of(file: Path) -> Tree:
-    """Read a bundled robot's URDF independently of the package: links and joints in file order."""
+    """Read a bundled robot's URDF independently of the package: links with inertia, in file order."""
     robot = ElementTree.parse(file).getroot()
 
     def numbers(element: ElementTree.Element | None, name: str, default: str = "0 0 0") -> Any:

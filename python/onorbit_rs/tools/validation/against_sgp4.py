@@ -1,4 +1,4 @@
-"""Compares SGP4 with the reference code, PyPI's ``sgp4``, over the time span of each published set."""
+"""Compares SGP4 with the reference code, PyPI's ``sgp4``, in and beyond the time spans of published sets."""
 
 from __future__ import annotations
 

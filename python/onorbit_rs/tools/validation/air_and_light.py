@@ -104,7 +104,7 @@ def balloon(days: int) -> Any:
 
 
 def balloon_node() -> tuple[float]:
-    """Return the relative error of the node; the other elements oscillate and are not compared."""
+    """Return the relative error of the change of the node; other elements oscillate and are not compared."""
     return (float(abs(balloon(200)[0, 2] / BALLOON_NODE[0] - 1.0)),)
 
 

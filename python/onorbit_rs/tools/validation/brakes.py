@@ -64,7 +64,7 @@ def spinning_wheel(slip_torque: float = np.inf, **settings: Any) -> oo.WorldTrac
 
 
 def slowing() -> tuple[float, ...]:
-    """Return the errors of rate, rad/s, angle, rad, energy, J, and momentum, N s, of a braked wheel."""
+    """Return the errors of rate, rad/s, angle, rad, energy, J, and momentum, N s and N m s, with a brake."""
     trace = spinning_wheel(slip_torque=SLIP)
     chaser, reduced = trace["chaser"], BASE * WHEEL / (BASE + WHEEL)
     stop = SPIN * reduced / TORQUE

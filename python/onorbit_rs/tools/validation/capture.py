@@ -70,7 +70,7 @@ def momentum(craft: Craft, v: Array, point: Array) -> tuple[Array, Array]:
     return total, scales
 
 
-# two rigid craft at the point (1.5, 0, 0) m; all axes parallel
+# two rigid craft, 2.5 m apart along x; all axes parallel
 FIRST = (1000.0, [300.0, 400.0, 500.0])  # kg, kg m²
 SECOND = (500.0, [120.0, 90.0, 150.0])
 POSITION, VELOCITY = [2.5, 0.0, 0.0], [-0.05, 0.02, 0.01, 0.02, 0.05, -0.03]

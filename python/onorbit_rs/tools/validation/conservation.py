@@ -16,7 +16,7 @@ STEP = 1e-3  # s
 
 
 def humanoid() -> tuple[oo.Model, Any]:
-    """Return the torso with one arm, and its initial configuration in the paper's experiment."""
+    """Return the torso with one arm, and its initial configuration in the OnOrbitROS paper's experiment."""
     model = oo.robots.load("humanoid_torso")
     q = model.neutral()
     q[JOINTS_Q] = ARM

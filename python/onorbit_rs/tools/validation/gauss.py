@@ -94,7 +94,7 @@ def project(
 
 
 def impact(first: Craft, second: Craft, *, gap: Array | float = 0.0, joints: bool = True) -> Impact:
-    """Return the impact of a capture: the closest velocities without relative twist, by kinetic energy.
+    """Return the impact of a capture: the closest velocities without relative twist in the metric of `M`.
 
     With the mass matrix `M` of both robots, the Jacobian `J` of the relative twist and the velocities `v⁻`
     before the capture: `v⁺ = v⁻ − M⁻¹ Jᵀ Λ J v⁻`, `Λ = (J M⁻¹ Jᵀ)⁻¹`, energy lost `½ (J v⁻)ᵀ Λ (J v⁻)`,

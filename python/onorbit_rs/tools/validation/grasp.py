@@ -26,7 +26,10 @@ def force_of(trace: oo.WorldTrace, names: tuple[str, ...] = ("left", "right")) -
 
 
 def closing() -> list[float]:
-    """Return the relative error of the closing rate, `v = r d/(d + 2 b)` with the damping `b` of each jaw."""
+    """Return the relative error of the closing rate, `v = r d/(d + 2 b)`.
+
+    `r` and `d` are the closing rate and the damping of the control law, `b` is the damping of each jaw.
+    """
     trace = run(world([grip()], opening=0.11), 1.0)
     damping = grasp_worlds.DAMPING
     expected = grasp_worlds.CLOSING * damping / (damping + 2.0 * JOINT_DAMPING)

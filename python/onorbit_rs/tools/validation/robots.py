@@ -1,4 +1,4 @@
-"""Tests complete runs: the paper's experiment, and the certificates of the bundled scenarios."""
+"""Tests complete runs: the experiment of the OnOrbitROS paper, and the bundled scenarios' certificates."""
 
 from __future__ import annotations
 

@@ -56,7 +56,7 @@ def curtis() -> tuple[float, float]:
 
 
 def j3(inclination: float) -> tuple[float, float]:
-    """Return the errors of the changes in eccentricity and inclination, rad, that J3 causes in ten days."""
+    """Return the errors of the largest changes of eccentricity and of inclination, rad, by J3 in ten days."""
     kepler = oo.Kepler(
         semi_major_axis=8970.667e3, eccentricity=0.25, inclination=inclination, raan=1.047,
         argument_of_periapsis=1.0, true_anomaly=0.0, mu=QI_MU,

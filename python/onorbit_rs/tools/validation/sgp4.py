@@ -34,7 +34,7 @@ class ElementSet(NamedTuple):
 
 
 def sets() -> list[ElementSet]:
-    """Return all 33 element sets of the report, each with its first, middle and last row."""
+    """Return all 33 sets of the report with their first, middle and last rows; refused sets have no rows."""
     rows: dict[int, list[list[float]]] = {}
     for row in table("sgp4_states"):
         number, *values = row.values()

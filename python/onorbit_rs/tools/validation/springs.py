@@ -160,7 +160,7 @@ def rubbing_end() -> tuple[float, float]:
     """Return the deflection, rad, and the time, s, at which the wheel with friction sticks.
 
     In each half swing, of the duration `π/ω`, friction `f` reduces the amplitude by `2 f/k`. The wheel sticks
-    at the first turning point at which the spring holds less than `f`.
+    at the first turning point at which the torque of the spring is at most `f`.
     """
     deflection, swings = AMPLITUDE, 0
     while abs(deflection) > FRICTION / STIFFNESS:

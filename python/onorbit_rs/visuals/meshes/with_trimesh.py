@@ -75,7 +75,7 @@ def _part(mesh: Any, pose: NDArray[np.float64]) -> Part:
 
 
 def _appearance(visual: Any) -> tuple[Any, Any, Any]:
-    """Return colours, texture and texture coordinates of a trimesh visual; without texture, None for both."""
+    """Return colours, texture and texture coordinates of a trimesh visual; the latter two may be None."""
     if visual.kind == "vertex":
         return visual.vertex_colors, None, None
     if visual.kind == "face":

@@ -29,9 +29,9 @@ impl<S: Scalar> ControllerSet<'_, S> {
         }
     }
 
-    /// Releases the first held joint whose holding torque exceeds its static friction; the joint then slips
-    /// in the direction of that torque. Returns false if there is no such joint. Requires the accelerations
-    /// of all joints.
+    /// Releases the first held joint whose holding torque exceeds its static friction. The joint then slips
+    /// against that torque, and the kinetic friction has the direction of the torque. Returns false if there
+    /// is no such joint. Requires the accelerations of all joints.
     pub(super) fn release_joint(&mut self, model: &Model) -> bool {
         let Self { dynamics, tau, commands, known, looped, .. } = self;
         let mut loops = active_loops(known, looped);

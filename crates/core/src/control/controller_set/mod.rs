@@ -39,7 +39,7 @@ pub struct ControllerSet<'a, S> {
     /// True if a control needs `q` and `v`. A task law on all joints needs them only if its error is
     /// evaluated.
     reads_state: bool,
-    /// Workspace of a task law on all joints; `None` without such a law.
+    /// Workspace of the fast path for a task law on all joints; `None` if no control can use this path.
     whole_robot: Option<Box<ComputedTorqueWork<S>>>,
     reduced: FreeFloating<S>,
     dynamics: HybridDynamics,
@@ -70,7 +70,7 @@ pub struct ControllerSet<'a, S> {
     /// Solver for the torques of a robot with closed loops; `None` if the robot has none.
     looped: Option<Box<Looped<S>>>,
     /// Motion of the joints that closed loops impose on the fingers of a grip-force law; `None` without
-    /// closed loops or such a law.
+    /// closed loops or without such a law.
     finger_loops: Option<Box<FingerLoops<S>>>,
     /// Normal forces of the contacts on the robot; empty if no law uses them.
     normal_forces: Vec<NormalForce>,
@@ -179,8 +179,8 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         all.filter(|(_, (_, state))| state.is_running()).map(|(index, (control, _))| (index, &control.law))
     }
 
-    /// Returns the control that drives joint `j` at `t`, s: one that ends after `t` and is active, or whose
-    /// given start time has been reached. Returns `None` if there is no such control.
+    /// Returns the control that drives joint `j` at `t`, s: one that ends after `t` and either is active or
+    /// has not yet started although its given start time is reached; `None` if there is no such control.
     pub fn driver_of(&self, j: usize, t: f64) -> Option<&Control> {
         let now = t + self.same_instant;
         let drives = |(control, state): &(&Control, &ControlState)| {
@@ -228,9 +228,9 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
     }
 
     /// Returns the tracking error of a control (index), desired less actual, of length [`Control::width`], at
-    /// the time of the last evaluation. It is zero if the control is not active or has not yet been
-    /// evaluated. For computed torque of a frame with all joints, the error is also zero unless the control
-    /// has a goal, a shifted reference or a trace column.
+    /// the time of the last evaluation; zero if the control is not active or has not yet been evaluated. For
+    /// a robot without closures that knows no other robots, the error of computed torque of a frame with all
+    /// joints is also zero unless the control has a goal, a shifted reference or a trace column.
     pub fn error(&self, control: usize) -> &[f64] {
         &self.states[control].error
     }

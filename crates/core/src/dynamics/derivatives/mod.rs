@@ -6,7 +6,8 @@
 //! constant in the axes of their frames, about the frame origins, so they move with their bodies. Forces in
 //! `tau[..6]` are held constant in base axes. The dynamics are therefore independent of the pose of the base,
 //! and the first six columns of the derivatives of generalized forces and accelerations with respect to `q`
-//! are zero. The first six columns of the derivatives of quantities in W axes are not zero.
+//! are zero. For accelerations and twists in W axes, the first three of these columns are zero, but the other
+//! three are not, because a rotation of the base rotates these vectors.
 //!
 //! A change of the position of joint `j` moves its whole subtree `C`. In axes that move with the subtree, the
 //! forces change only because of the velocity `Ψ̇ = v × S` and the acceleration `Ψ̈ = a × S + v × Ψ̇` of the

@@ -23,8 +23,9 @@ const CLOSE: f64 = 1e-12;
 /// Moves the configuration `q`, `(nq,)`, to a nearby one that satisfies the constraints of `loops`, by
 /// Newton's method in the metric of the kinetic energy. If this fails, which may happen far from a closed
 /// configuration if there are more constraints than joints, the search starts again from the given `q` with
-/// damped steps, after which Newton's method is applied again. Afterwards [`ClosedLoops::errors`] returns the
-/// remaining errors. They are not small if no closed configuration was found.
+/// damped steps; once the errors are small, Newton's method is applied again. Afterwards
+/// [`ClosedLoops::errors`] returns the remaining errors, which are not small if no closed configuration was
+/// found.
 pub fn close_loops(model: &Model, data: &mut Data<f64>, loops: &mut ClosedLoops<f64>, q: &mut [f64]) {
     let given = q.to_vec();
     if newton(model, data, loops, q) {

@@ -9,8 +9,8 @@ use crate::number_text::{exact, short, unlike};
 pub enum AtmosphereError {
     /// A position is inside the Earth.
     #[error(
-        "altitude is {altitude} m, which is below the ellipsoid of the Earth; expected at least 0 m; in a \
-         run, raise the orbit or end the run earlier",
+        "altitude is {altitude} m; expected at least 0 m, because the density is not defined below the \
+         ellipsoid of the Earth; in a run, raise the orbit or end the run earlier",
         altitude = short(*altitude)
     )]
     BelowSurface {

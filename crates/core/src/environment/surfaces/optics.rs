@@ -19,8 +19,8 @@ impl Optics {
     /// from 0 to 1.
     ///
     /// # Errors
-    /// [`SurfaceError::Value`] for a fraction outside 0 to 1, and [`SurfaceError::Reflection`] for a sum
-    /// above 1.
+    /// [`SurfaceError::Value`] for a fraction that is negative or not finite, and
+    /// [`SurfaceError::Reflection`] for a sum above 1.
     pub fn new(specular: f64, diffuse: f64) -> Result<Self, SurfaceError> {
         not_negative("specular", specular)?;
         not_negative("diffuse", diffuse)?;

@@ -69,7 +69,7 @@ pub enum UrdfProblem {
     #[error("the URDF is empty; expected a <robot> element")]
     Empty,
     #[error(
-        "the file is larger than {limit} bytes, the limit for robot descriptions; remove data that does not \
+        "the URDF is larger than {limit} bytes, the limit for robot descriptions; remove data that does not \
          describe the robot"
     )]
     TooLarge { limit: usize },
@@ -130,7 +130,8 @@ pub enum UrdfProblem {
     UnknownLink { joint: String, link: String, candidates: Vec<String> },
     #[error(
         "link '{link}' is the child of two joints, '{}' and '{}', but a URDF describes a tree; remove one of the \
-         joints, and if both exist, close the loop with 'loops' in the scenario (in Python: Model.with_loops)",
+         joints and, if the robot has both, close the loop with 'loops' in the scenario (in Python: \
+         Model.with_loops)",
         .joints[0], .joints[1]
     )]
     TwoParents { link: String, joints: [String; 2] },

@@ -8,7 +8,7 @@ use roxmltree::{Document, Error as XmlError, Node, ParsingOptions};
 /// Largest number of XML nodes (elements, text nodes, comments and others) in a file. The file of a large
 /// robot contains about 10⁴ nodes.
 const MAX_NODES: u32 = 1_000_000;
-/// Names of children of `<robot>`, besides links, joints and materials, that are ignored without a warning.
+/// Names of children of `<robot>` that are ignored without a warning.
 const KNOWN: &[&str] = &[
     "gazebo",
     "transmission",

@@ -77,7 +77,8 @@ impl<'de> Deserializer<'de> for Value<'de> {
         visitor.visit_some(self)
     }
 
-    /// Deserializes the type of a joint, or the first shape in a geometry.
+    /// Deserializes the type of a joint, or the shape in a geometry; of several shapes, the one whose variant
+    /// urdf-rs declares first.
     fn deserialize_enum<V: Visitor<'de>>(
         self,
         _name: &'static str,
@@ -88,7 +89,7 @@ impl<'de> Deserializer<'de> for Value<'de> {
             Self::Element(geometry) => {
                 let shape = variants.iter().find_map(|&shape| geometry.child(shape));
                 visitor.visit_enum(Shape(shape.ok_or_else(|| {
-                    Refusal::Placed(geometry.lacks_element("box, sphere, cylinder, capsule or mesh"))
+                    Refusal::Placed(geometry.lacks_element("box>, <sphere>, <cylinder>, <capsule> or <mesh"))
                 })?))
             }
             Self::Text(joint, _, text) => {

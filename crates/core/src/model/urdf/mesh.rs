@@ -84,7 +84,7 @@ impl<'a> Meshes<'a> {
                      command line: --package-path)"
                 )
             }
-            _ => "; copy the missing files into a folder 'meshes' beside the robot's file".to_owned(),
+            _ => "; copy each missing file into a folder 'meshes' beside the URDF file".to_owned(),
         };
         let such = if self.missing.len() == 1 { ":" } else { ", the first being" };
         Some(format!("{files} not found{such} '{first}'; simpler shapes are drawn instead{hint}"))
@@ -94,9 +94,9 @@ impl<'a> Meshes<'a> {
         let (name, path) = self.guessed.first()?;
         let files = mesh_files(self.guessed.len());
         Some(format!(
-            "{files} not found at the paths in the URDF; files of the same name in the folder of the URDF, or \
-             in its subfolder 'meshes', are drawn instead, such as {path} for '{name}'; correct the paths in the \
-             URDF if other files are meant"
+            "{files} not found where the URDF states; a file of the same name in the folder of the URDF, or \
+             in its subfolder 'meshes', is drawn instead (for '{name}': {path}); correct the URDF if another \
+             file is meant"
         ))
     }
 

@@ -93,7 +93,7 @@ impl<'a> Writer<'a> {
     }
 
     /// Writes a name. Only its first colon separates a prefix; further colons become underscores. All colons
-    /// do if the prefix is empty, `xml` or `xmlns`.
+    /// do if the prefix is empty, `xml` or `xmlns`, or if nothing follows the first colon.
     fn name(&mut self, name: &'a str) -> Written {
         let is_free = |prefix: &str| !matches!(prefix, "" | "xml" | "xmlns");
         let split = name.split_once(':').filter(|(prefix, local)| is_free(prefix) && !local.is_empty());

@@ -208,8 +208,8 @@ fn phase(elements: &Elements, shape: &Shape, conic: &Conic) -> Result<(f64, f64)
 /// subtraction of whole turns.
 fn angle(name: &'static str, value: f64) -> Result<f64, OrbitError> {
     if finite(name, value)?.abs() > LARGEST_ANGLE {
-        let expected = "a magnitude of at most 1e15 rad (above it, adjacent floating-point numbers are more than \
-                        1/8 rad apart)";
+        let expected = "a magnitude of at most 1e15 rad (above it, adjacent floating-point numbers are at \
+                        least 1/8 rad apart)";
         return Err(OrbitError::OutOfRange { name, value, expected });
     }
     Ok(value)

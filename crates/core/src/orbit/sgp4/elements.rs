@@ -71,7 +71,7 @@ impl MeanElements {
             satellite: satellite
                 .trim()
                 .parse()
-                .map_err(|_| wrong("NORAD_CAT_ID", satellite, "a whole number"))?,
+                .map_err(|_| wrong("NORAD_CAT_ID", satellite, "a non-negative whole number"))?,
             epoch: Epoch::parse(&epoch)
                 .ok_or_else(|| wrong("EPOCH", epoch, "a UTC date such as 2024-01-31T12:34:56.789"))?,
             drag_term: number("BSTAR")?,

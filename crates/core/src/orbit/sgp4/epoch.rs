@@ -23,8 +23,9 @@ impl Epoch {
         }
     }
 
-    /// Parses `2024-01-31T12:34:56.789` or `2024-031T12:34:56.789`, with `T` or a space, with or without a
-    /// final `Z`. Returns `None` for any other text.
+    /// Parses a text such as `2024-01-31T12:34:56.789` or `2024-031T12:34:56.789`, with `T` or a space, with
+    /// or without a final `Z`. Returns `None` for a text of another form and for a date or time that does
+    /// not exist.
     pub(super) fn parse(text: &str) -> Option<Self> {
         let (date, time) = text.trim().trim_end_matches('Z').split_once(['T', ' '])?;
         let mut time = time.split(':');

@@ -31,11 +31,12 @@ pub(super) const ATTITUDE: f64 = 0.1;
 /// unit is stated.
 ///
 /// An integrator that integrates momentum conserves both momenta by construction; the other values are
-/// independent checks. Checks that compare successive steps are evaluated during the run if only some steps
-/// are recorded, or if the group of the system has events or contacts with friction. They are `None` for an
-/// adaptive integrator, whose rows are interpolated, and for an external engine if not every step is
-/// recorded. Without external forces, however, the check of the centre of mass does not depend on the spacing
-/// of the rows and is always available.
+/// independent checks. Checks that compare successive steps are computed from the rows or, if only some steps
+/// are recorded or the group of the system has events or contacts with friction, during the run. They are
+/// `None` for an adaptive integrator, whose rows are interpolated, for an external engine if not every step
+/// is recorded, and if rows from which they would be computed were removed without being checked. Without
+/// external forces, however, the check of the centre of mass does not depend on the spacing of the rows and
+/// is always available.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Certificate {
     /// Drift of linear momentum: `max |P − P₀ − ∫F dt|` with the external force `F`, relative to the largest

@@ -71,7 +71,8 @@ pub(super) struct TraceRow<'a> {
     /// External force just after this row, computed from the base rows of inverse dynamics, N.
     pub(super) force: Vec3<f64>,
     pub(super) mass: f64,
-    /// Momentum of the bodies relative to the centre of mass, `Σ mₖ |vₖ − v_com|`, kg m/s.
+    /// Sum of the magnitudes of the momenta of the bodies relative to the centre of mass, `Σ mₖ |vₖ − v_com|`,
+    /// kg m/s.
     pub(super) relative_momentum: f64,
     /// Momentum scale of the rotations, `Σ mₖ ρₖ |ωₖ|` with the radius of gyration `ρₖ` of each body, kg m/s.
     pub(super) spin: f64,

@@ -114,7 +114,7 @@ impl Contacts {
             for (i, a) in sides[0].iter().enumerate() {
                 for (j, b) in sides[1].iter().enumerate().filter(|(_, b)| b.frame != a.frame) {
                     if first[i] && second[j] && order(b) < order(a) {
-                        continue; // the pair of `b` and `a`, which has both pieces on the other sides, is the same
+                        continue; // the same pair also occurs with its pieces on the other sides
                     }
                     let sides = [(i, a), (j, b)].map(|(piece, side)| Side {
                         piece,

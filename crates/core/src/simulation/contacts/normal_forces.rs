@@ -30,7 +30,7 @@ impl Contacts {
         }
     }
 
-    /// Returns true if any pieces press on each other with a compliant normal force during the step.
+    /// Returns true if any pieces with a compliant normal force overlap during the step.
     pub(in crate::simulation) fn press(&self) -> bool {
         let is_pressing = |&number: &usize| {
             let touching = &self.list[number];

@@ -19,8 +19,8 @@ const IDLE: f64 = 1e-6;
 /// its stop during the step.
 const STILL: f64 = 1e-9;
 /// Smallest length to which a step may be shortened to improve its energy balance, relative to its length
-/// before any mode change was located. If it were relative to the length after a change was located, which
-/// may end at a jump of the elastic energy, the steps would approach the jump without passing it.
+/// before any mode change was located. If it were relative to the length after a change was located, and
+/// the change were at a jump of the elastic energy, the steps would approach the jump without passing it.
 const SHORTEST: f64 = 1e-4;
 /// Bound on the rounding error of the energy balance, relative to the sum of the magnitudes of the kinetic
 /// energies and of the work.

@@ -177,7 +177,7 @@ macro_rules! lanes {
             fn enter<R>(kernel: impl FnOnce() -> R) -> R {
                 #[cfg(target_arch = "x86_64")]
                 {
-                    assert!(Self::is_available(), "lanes entered on a processor without their instructions");
+                    assert!(Self::is_available(), "this processor lacks the SIMD instructions of the kernel");
                     // SAFETY: the assertion above guarantees that the processor has these features.
                     unsafe { $enter(kernel) }
                 }

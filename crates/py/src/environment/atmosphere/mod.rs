@@ -177,7 +177,7 @@ fn broadcast<'py, const N: usize>(
     let together = numpy.call_method1("broadcast_arrays", PyTuple::new(py, values)?);
     let together: Vec<Bound<'py, PyAny>> = together.and_then(|arrays| arrays.extract()).map_err(|_| {
         let message = format!(
-            "the shapes of {} cannot be broadcast to one shape; give numbers, or arrays of one shape",
+            "the shapes of {} do not match; give numbers, or arrays with one value per point",
             names.join(", ")
         );
         plain(py, "ShapeError", &message)

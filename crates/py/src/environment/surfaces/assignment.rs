@@ -25,7 +25,7 @@ impl SurfaceAssignment {
             Err(_) => {
                 let got = type_name(value);
                 let message = format!(
-                    "surfaces holds a value of type {got}; expected Faces, Plates or Cannonball, or a dict \
+                    "a surface is of type {got}; expected Faces, Plates or Cannonball, or a dict \
                      from names of bodies to these"
                 );
                 Err(raise(
