@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
@@ -61,6 +62,22 @@ def test_kernels_pass_their_tests_on(level: str) -> None:
     passed = re.search(r"(\d+) passed", done.stdout)
     assert passed
     assert int(passed[1]) > 250
+
+
+DIGESTS = """
+import json, sys
+sys.path.insert(0, "tests")
+import recorded_bits
+robot, world = recorded_bits._of_scenario("humanoid_reach"), recorded_bits._of_world("capture_tumbling_target")
+print(json.dumps([robot, world]))
+"""
+
+
+@pytest.mark.skipif(BEST != "avx512", reason=f"the best instruction set of this processor is {BEST}")
+def test_the_registers_of_avx512_change_no_bit_of_a_run() -> None:
+    digests = {level: json.loads(python(level, "-c", DIGESTS).stdout) for level in LEVELS}
+    assert digests["avx512"] == digests["avx2+fma"]
+    assert digests["baseline"] != digests["avx2+fma"]  # without fused multiply-add, rounding differs
 
 
 def test_the_build_does_not_depend_on_the_processor() -> None:

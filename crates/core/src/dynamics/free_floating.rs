@@ -230,14 +230,15 @@ fn reduced_inertia<S: Real>(
         (out.coupling[k], out.base_response[k]) = (force, -inverse.at_com(force));
     }
     let (nodes, bodies, base_response) = (&nodes[1..], &bodies[1..=n], &out.base_response[..n]);
+    let (inertia, couplings) = (&mut out.inertia[..n * n], &out.coupling[..n]);
     for k in 0..n {
-        let (mut force, coupling, mut ancestor) = (bodies[k].force, out.coupling[k], k + 1);
-        for j in (0..=k).rev() {
+        let (mut force, coupling, mut ancestor) = (bodies[k].force, couplings[k], k + 1);
+        let before = nodes[..=k].iter().zip(&bodies[..=k]).zip(&base_response[..=k]);
+        for (j, ((node, body), response)) in before.enumerate().rev() {
             // −(Mbmᵀ Mbb⁻¹ Mbm)_jk
-            let mut entry = base_response[j].dot(coupling);
+            let mut entry = response.dot(coupling);
             if j + 1 == ancestor {
                 // + S_jᵀ f_S
-                let (node, body) = (&nodes[j], &bodies[j]);
                 entry += joint_effort(node, body.axis(), force);
                 ancestor = node.parent;
                 // not needed at the base, which has no joint
@@ -245,10 +246,10 @@ fn reduced_inertia<S: Real>(
                     force = force.from_point(body.offset);
                 }
             }
-            out.inertia[k * n + j] = entry;
-            out.inertia[j * n + k] = entry;
+            inertia[k * n + j] = entry;
+            inertia[j * n + k] = entry;
         }
-        out.inertia[k * n + k] += S::of(nodes[k].rotor_inertia);
+        inertia[k * n + k] += S::of(nodes[k].rotor_inertia);
     }
 }
 

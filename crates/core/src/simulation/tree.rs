@@ -257,7 +257,7 @@ impl<'a, S: Real> Tree<'a, S> {
         for joint in modes.given().iter().map(|given| given.joint) {
             forces[BASE_NV + joint] = data.bodies[joint + 1].holding_torque; // its power is work
         }
-        rate.v.copy_from_slice(v);
+        rate.joint_rates.copy_from_slice(&v[BASE_NV..]);
         if state.center.is_some() {
             rate.center_velocity = Some(state.momentum().linear * (S::of(1.0) / *mass));
         }

@@ -45,9 +45,8 @@ pub(crate) struct TreeRate<S> {
     pub(crate) base_acceleration: Vec3<S>,
     /// Rate of the rotation vector since the start of the step, base axes, rad/s.
     pub(crate) rotation_rate: Vec3<S>,
-    /// Velocity at the stage, `(nv,)`, m/s and rad/s, of which only the joint rates, `[BASE_NV..]`, are
-    /// integrated.
-    pub(crate) v: Vec<S>,
+    /// Joint rates at the stage, `(n,)`, rad/s and m/s.
+    pub(crate) joint_rates: Vec<S>,
     /// Acceleration, `(nv,)`, m/s² and rad/s².
     pub(crate) a: Vec<S>,
     /// Time derivative of the momentum: the sum of the external forces, and of their moments about the centre
@@ -73,7 +72,7 @@ impl<S: Real> TreeRate<S> {
             base_velocity: Vec3::zero(),
             base_acceleration: Vec3::zero(),
             rotation_rate: Vec3::zero(),
-            v: zeros.clone(),
+            joint_rates: zeros[BASE_NV..].to_vec(),
             a: zeros,
             wrench: Momentum::default(),
             power: S::of(0.0),
@@ -93,7 +92,7 @@ impl<S: Real> TreeRate<S> {
         self.wrench.angular = other.wrench.angular.scale_add(s, self.wrench.angular);
         self.power = other.power.mul_add(s, self.power);
         self.loss = other.loss.mul_add(s, self.loss);
-        for (to, from) in [(&mut self.v, &other.v), (&mut self.a, &other.a)] {
+        for (to, from) in [(&mut self.joint_rates, &other.joint_rates), (&mut self.a, &other.a)] {
             for (to, from) in to.iter_mut().zip(from) {
                 *to = from.mul_add(s, *to);
             }
@@ -115,7 +114,7 @@ impl<S: Real> TreeRate<S> {
         (self.base_velocity, self.base_acceleration, self.rotation_rate) =
             (base_velocity, base_acceleration, rotation_rate);
         (self.wrench, self.power, self.loss) = (wrench, power, loss);
-        self.v.copy_from_slice(&from.v);
+        self.joint_rates.copy_from_slice(&from.joint_rates);
         self.a.copy_from_slice(&from.a);
         self.center_velocity.clone_from(&from.center_velocity);
         self.shares.copy_from_slice(&from.shares);
@@ -128,7 +127,7 @@ impl<S: Real> TreeRate<S> {
         (self.base_velocity, self.rotation_rate, self.wrench) =
             (Vec3::zero(), Vec3::zero(), Momentum::default());
         (self.power, self.loss) = (S::of(0.0), S::of(0.0));
-        self.v.fill(S::of(0.0));
+        self.joint_rates.fill(S::of(0.0));
         self.a.fill(S::of(0.0));
         self.center_velocity = self.center_velocity.map(|_| Vec3::zero());
         self.shares.fill(S::of(0.0));
@@ -209,7 +208,7 @@ impl<S: Real> TreeState<S> {
         rate.base_velocity.scale_add(h, Vec3::from_slice(&from.q)).write(&mut self.q);
         let attitude = Quat::from_xyzw(&from.q[3..]).product(exp_so3(rate.rotation_rate * h));
         attitude.renormalized().write_xyzw(&mut self.q[3..]);
-        let joints = (&mut self.q[BASE_NQ..], &from.q[BASE_NQ..], &rate.v[BASE_NV..]);
+        let joints = (&mut self.q[BASE_NQ..], &from.q[BASE_NQ..], &rate.joint_rates[..]);
         for (to, from, rate) in [joints, (&mut self.v[..], &from.v[..], &rate.a[..])] {
             for ((to, from), rate) in to.iter_mut().zip(from).zip(rate) {
                 *to = rate.mul_add(h, *from);

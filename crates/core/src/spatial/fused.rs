@@ -1,6 +1,9 @@
-//! Scalar with fused multiply-add, for processors with AVX2 and FMA.
+//! Scalar with fused multiply-add, for processors with AVX2 and FMA. On some processors with AVX-512, its
+//! kernels use the registers of AVX-512; the results have the same bits.
 
 use super::cpu_features::has_fma;
+#[cfg(target_arch = "x86_64")]
+use super::cpu_features::has_wide_registers;
 use super::lanes::Lanes4;
 use super::scalar::{ColumnKernel, Real, Scalar};
 use super::sine::{FAST_SINE_LIMIT, sin_cos};
@@ -26,6 +29,12 @@ impl Fused {
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
 fn enter_fused<R>(kernel: impl FnOnce() -> R) -> R {
+    kernel()
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma")]
+fn enter_fused_avx512<R>(kernel: impl FnOnce() -> R) -> R {
     kernel()
 }
 
@@ -144,6 +153,10 @@ impl Real for Fused {
     fn enter<R>(kernel: impl FnOnce() -> R) -> R {
         #[cfg(target_arch = "x86_64")]
         {
+            if has_wide_registers() {
+                // SAFETY: the processor has all features of AVX-512 that the entry point requires.
+                return unsafe { enter_fused_avx512(kernel) };
+            }
             assert!(Self::is_available(), "fused kernels require a processor with AVX2 and FMA");
             // SAFETY: the assertion above guarantees that the processor has both features.
             unsafe { enter_fused(kernel) }

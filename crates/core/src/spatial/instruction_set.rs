@@ -1,5 +1,6 @@
 //! Instruction sets for which the kernels are compiled.
 
+use super::cpu_features::allow_wide_registers;
 use super::fused::Fused;
 use super::lanes::Lanes8;
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -12,7 +13,8 @@ pub enum InstructionSet {
     Baseline = 0,
     /// Fused multiply-add (x86-64: AVX2 and FMA).
     Fused = 1,
-    /// 512-bit vectors in batch computations (x86-64: AVX-512 F, DQ and VL).
+    /// 512-bit vectors in batch computations (x86-64: AVX-512 F, DQ and VL) and, on processors of AMD, their
+    /// 32 registers in kernels for one state.
     Wide = 2,
 }
 
@@ -38,6 +40,7 @@ impl InstructionSet {
     /// Limits the level used by all threads to at most `level`, until the next call.
     pub fn limit(level: Self) {
         ALLOWED.store(level as u8, Ordering::Relaxed);
+        allow_wide_registers(level >= Self::Wide);
     }
 
     /// Returns the level with the given [`name`](Self::name); `None` if there is none.

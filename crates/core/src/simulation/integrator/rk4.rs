@@ -40,15 +40,17 @@ impl<S: Real> BaseStages<S> {
         Self { velocity: Vec3::zero(), accelerations: [Vec3::zero(); 3], theta: Vec3::zero() }
     }
 
-    /// Stores the acceleration at the stage with this index and, at the first stage, the velocity. The
-    /// accelerations of later stages have zero weight until they are stored, but must be finite.
+    /// Stores the acceleration at the stage with this index, unless it is the last stage, and the velocity at
+    /// the first stage. The accelerations of later stages have zero weight until they are stored, but must be
+    /// finite.
     #[inline(always)]
     fn add_stage(&mut self, stage: usize, rate: &TreeRate<S>) {
         if stage == 0 {
             self.velocity = rate.base_velocity;
             self.accelerations = [rate.base_acceleration; 3];
+        } else if let Some(acceleration) = self.accelerations.get_mut(stage) {
+            *acceleration = rate.base_acceleration;
         }
-        self.accelerations[stage] = rate.base_acceleration;
     }
 }
 
@@ -65,32 +67,42 @@ pub(super) fn rk4<S: Real>(
     state: &mut State<S>,
     interval: (f64, f64),
 ) -> Result<(), SimulationError> {
-    let Stages { start, trial, rate, sum, .. } = stages;
-    let (t, h) = (interval.0, interval.1 - interval.0);
-    sum.clear();
-    for (stage, c) in NODES.into_iter().enumerate() {
-        add_stage(stage, bases, trial, rate, sum);
-        for (base, rate) in bases.iter_mut().zip(&rate.trees) {
-            base.add_stage(stage, rate);
-        }
-        move_states(bases, NYSTROM[stage], (c, h), (start, rate), trial);
-        let instant = if c == 1.0 { interval.1 } else { t + c * h };
-        equations.evaluate(instant, interval, trial, rate)?;
+    stages.sum.clear();
+    for stage in 0..NODES.len() {
+        evaluate_next(stage, stages, bases, equations, interval)?;
     }
+    let Stages { start, trial, rate, sum, .. } = stages;
     add_stage(NODES.len(), bases, trial, rate, sum);
-    move_states(bases, NYSTROM_END, (1.0, h), (start, sum), state);
+    move_states(bases, NYSTROM_END, (1.0, interval.1 - interval.0), (start, sum), state);
     Ok(())
 }
 
+/// Adds the time derivatives at the stage with this index to the weighted sum, and evaluates the next stage.
+// Not inlined, like the functions below: the machine code of a step fits into the instruction cache only if
+// the stages share it.
+#[inline(never)]
+fn evaluate_next<S: Real>(
+    stage: usize,
+    stages: &mut Stages<S>,
+    bases: &mut [BaseStages<S>],
+    equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
+    interval: (f64, f64),
+) -> Result<(), SimulationError> {
+    let Stages { start, trial, rate, sum, .. } = stages;
+    let (c, t, h) = (NODES[stage], interval.0, interval.1 - interval.0);
+    add_stage(stage, bases, trial, rate, sum);
+    move_states(bases, NYSTROM[stage], (c, h), (start, rate), trial);
+    let instant = if c == 1.0 { interval.1 } else { t + c * h };
+    equations.evaluate(instant, interval, trial, rate)
+}
+
 /// Adds the time derivatives `rate` at the stage with this index, which was evaluated at `trial`, to the
-/// weighted sum. The derivative of the rotation vector `θ` is `ω` at the first stage, where `θ` is zero, and
-/// `dexp⁻¹(θ) ω` at the others.
-// Not inlined, like `move_states`: the machine code of a step fits into the instruction cache only if the
-// stages share it.
+/// weighted sum and to `bases`. The derivative of the rotation vector `θ` is `ω` at the first stage, where
+/// `θ` is zero, and `dexp⁻¹(θ) ω` at the others.
 #[inline(never)]
 fn add_stage<S: Real>(
     stage: usize,
-    bases: &[BaseStages<S>],
+    bases: &mut [BaseStages<S>],
     trial: &State<S>,
     rate: &mut Rate<S>,
     sum: &mut Rate<S>,
@@ -98,6 +110,9 @@ fn add_stage<S: Real>(
     S::enter(
         #[inline(always)]
         || {
+            for (base, rate) in bases.iter_mut().zip(&rate.trees) {
+                base.add_stage(stage, rate);
+            }
             if stage > 0 {
                 to_rotation_vector(bases, trial, rate);
             }

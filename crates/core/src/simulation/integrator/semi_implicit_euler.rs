@@ -23,10 +23,11 @@ pub(super) fn semi_implicit_euler<S: Real>(
             state.move_from(start, rate, h);
             let parts = state.trees.iter_mut().zip(&start.trees).zip(&mut sum.trees);
             for (((state, start), sum), tree) in parts.zip(&equations.trees) {
-                for (delta, v) in sum.v.iter_mut().zip(&state.v) {
-                    *delta = *v * h;
+                let increment = &mut sum.a; // this method needs no sum, so that its memory is free
+                for (increment, v) in increment.iter_mut().zip(&state.v) {
+                    *increment = *v * h;
                 }
-                integrate(&start.q, &sum.v, &mut state.q);
+                integrate(&start.q, increment, &mut state.q);
                 tree.frame_velocity().scale_add(h, Vec3::from_slice(&state.q)).write(&mut state.q);
             }
         },

@@ -143,7 +143,7 @@ impl Tolerance {
         .fold(0.0, larger);
         for j in 0..start.v.len() - BASE_NV {
             let scale = if step.is_prismatic(j) { size } else { 1.0 };
-            largest = larger(largest, relative(h * sum.v[BASE_NV + j].lane(0).abs(), scale));
+            largest = larger(largest, relative(h * sum.joint_rates[j].lane(0).abs(), scale));
             let error = h * sum.a[BASE_NV + j].lane(0).abs();
             largest = larger(largest, relative(error, step.rate(j) + slow * scale));
         }
