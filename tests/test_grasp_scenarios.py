@@ -190,7 +190,7 @@ BAD: list[tuple[str, str, str, str, str]] = [
     ("grasp_and_capture", "force: 25 N", "force: 80 N", GRIP,
      "requires an effort of 160 N from joint 'left_jaw', whose effort limit is 150 N"),
     ("grasp_and_capture", "target/handle]\n    normal", "target/bus]\n    normal", GRIP,
-     "the gripper opens by 0.12 m at most"),
+     "the largest opening of the gripper is 0.12 m"),
     ("grasp_and_capture", "[left_pad, right_pad]", "[left_pad, right_pat]",
      "events[0].when.latch.touching[1]", "no contact is named 'right_pat'; did you mean 'right_pad'?"),
     ("grasp_and_capture", "        ramp: 1 s\n", "        ramp: 1 s\n        starts_at_present: true\n",

@@ -198,8 +198,8 @@ def test_a_run_without_a_recording_is_drawn(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("options", "text"),
     [
-        (["--size", "0x10"], "is not a size; write WIDTHxHEIGHT in pixels, each from 1 to 8192"),
-        (["--size", "wide"], "is not a size"),
+        (["--size", "0x10"], "is not valid; write WIDTHxHEIGHT in pixels, each from 1 to 8192"),
+        (["--size", "wide"], "is not valid"),
         (["--eye", "1,2"], "is not a point; write three finite numbers in m, such as --eye=3,-4,2.5"),
         (["--eye", "1,2,nan"], "is not a point"),
         (["--look-at", "a,b,c"], "--look-at 'a,b,c' is not a point"),

@@ -17,7 +17,7 @@ pub enum TextFileError {
     NotRegular,
     #[error("it is larger than {limit} bytes, the largest size that is read; give a smaller file")]
     TooLarge { limit: usize },
-    #[error("it is not UTF-8 text (its byte {at} is invalid); save it as UTF-8")]
+    #[error("it is not UTF-8 text (the byte at offset {at} is invalid); save it as UTF-8")]
     NotUtf8 { at: usize },
     #[error("{reason}; check the path and its permissions")]
     Unreadable { reason: String },

@@ -24,7 +24,10 @@ _COMMAND = (sys.executable, "-m", "onorbit_rs.campaigns.worker")
 
 
 class _InProcess:
-    """Runs cases in a worker process, which is started for the first case and restarted if it dies."""
+    """Runs cases in a worker process.
+
+    The process is started for the first case and, after it has died, for the next one.
+    """
 
     def __init__(self, greeting: bytes) -> None:
         self._greeting = greeting

@@ -30,7 +30,7 @@ def check_figure_file(option: str, file: Path | None, *, force: bool) -> None:
     """
     if file is not None and file.suffix.lower() not in KINDS:
         raise InputError(
-            f"{option} {file} must end in {', '.join(KINDS[:-1])} or {KINDS[-1]}",
+            f"{option}: the file name {file} must end in {', '.join(KINDS[:-1])} or {KINDS[-1]}",
             name=option.lstrip("-"), got=file.suffix, expected=KINDS,
         )  # fmt: skip
     check_output_file(file, force=force)

@@ -107,7 +107,7 @@ def _size(text: str | None) -> tuple[int, int] | None:
     if width.isdecimal() and height.isdecimal() and all(1 <= int(one) <= LARGEST for one in (width, height)):
         return int(width), int(height)
     raise InputError(
-        f"--size {text!r} is not a size; write WIDTHxHEIGHT in pixels, each from 1 to {LARGEST}, such as "
+        f"--size {text!r} is not valid; write WIDTHxHEIGHT in pixels, each from 1 to {LARGEST}, such as "
         "1280x720",
         name="size", got=text, expected=f"1x1 to {LARGEST}x{LARGEST}",
     )  # fmt: skip

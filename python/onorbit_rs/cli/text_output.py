@@ -36,7 +36,7 @@ def print_failure(message: str) -> None:
 
 
 def show_warning(message: Warning | str, *_: Any, **__: Any) -> None:
-    """Print a warning in one line, without its location in the code."""
+    """Print a warning on one line, without its location in the code."""
     print_error(f"{_colored('onorbit: warning:', YELLOW)} {_in_one_line(message)}")
 
 

@@ -49,7 +49,7 @@ SCREEN_DPI = 110
 
 
 class NotebookFigure(Figure):
-    """A figure that notebooks display without pyplot, which otherwise registers the display."""
+    """Figure with its own PNG representation, so that notebooks display it without pyplot."""
 
     def _repr_png_(self) -> bytes:
         """Return the figure as PNG."""

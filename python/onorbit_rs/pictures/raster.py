@@ -92,7 +92,12 @@ class Canvas:
             self._fill_small(boxes[part], planes[part], colors[part])
 
     def _fill_large(self, box: NDArray[np.int_], planes: Floats, colors: Floats) -> None:
-        """Fill one triangle with the box (4,) of its pixels, ``planes`` (4, 3) and colours of its corners."""
+        """Draw one triangle in those pixels of its ``box`` in which it is the nearest so far.
+
+        ``box`` (4,) contains the first x and y, and the x and y after the last. ``planes`` (4, 3) contains
+        the coefficients of x, y and 1 in the three barycentric coordinates and in the inverse depth;
+        ``colors`` (3, channels) are those of the corners.
+        """
         x0, y0, x1, y1 = box
         x = np.arange(x0, x1) + 0.5
         y = np.arange(y0, y1)[:, None] + 0.5

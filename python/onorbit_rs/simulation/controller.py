@@ -65,10 +65,13 @@ class Controller(ABC):
         ----------
         t : float
             Simulated time, s.
-        state : object with ``q``, ``v`` and ``joints``
+        state : State
             ``q`` (nq,): base position (m, W), base quaternion xyzw, joint positions (rad or m);
             ``v`` (nv,): base twist (m/s and rad/s, body axes), joint rates (rad/s or m/s);
-            ``joints``: names of the controlled joints: those of the joint group, otherwise all.
+            ``joints``: names of the controlled joints: those of the joint group, otherwise all;
+            ``reference_pose`` (4, 4), ``reference_velocity`` (6,), ``reference_acceleration`` (6,): desired
+            motion of the tool, linear part first, m and rad, in W, or relative to the base for a reference
+            in the frame ``"base"``; None without a reference.
 
         Returns
         -------

@@ -99,7 +99,10 @@ def _overrides(settings: Sequence[Setting], *, has_collisions: bool = False) -> 
 def with_panels(
     left: rrb.Container | rrb.View, right: rrb.Container, duration_s: float, *, is_live: bool
 ) -> rrb.Blueprint:
-    """Return a layout of two columns that plays on simulation time."""
+    """Return a layout of two columns.
+
+    Its time panel plays the run in simulation time or, if ``is_live``, follows the newest data.
+    """
     return rrb.Blueprint(
         rrb.Horizontal(left, right, column_shares=[3, 2]),
         rrb.TimePanel(

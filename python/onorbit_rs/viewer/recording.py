@@ -99,7 +99,7 @@ def write_recording(path: Path, trace: Trace, setting: Setting, *, notes: str = 
 
 @contextmanager
 def recorded_in(path: Path, name: str) -> Iterator[rr.RecordingStream]:
-    """Yield a new recording, and write it to a file after the block."""
+    """Yield a new recording; write it to a file when the block ends without an exception."""
     recording = new_recording(name)
     encoded = Encoded(recording)
     yield recording

@@ -53,8 +53,8 @@ pub enum ControlError {
     )]
     NothingOpposes { control: String, system: String, fingers: Vec<String> },
     #[error(
-        "control '{control}': the gripper opens by {opening} m at most, but the narrowest shape of {object} is {width} m \
-         wide; use a wider gripper, or another part of the object",
+        "control '{control}': the largest opening of the gripper is {opening} m, but the narrowest shape of \
+         {object} is {width} m wide; use a wider gripper, or another part of the object",
         opening = short(*opening), width = short(*width)
     )]
     TooWide { control: String, opening: f64, object: String, width: f64 },

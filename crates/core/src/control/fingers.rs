@@ -81,8 +81,8 @@ impl Finger {
 }
 
 /// Returns the joints on the path from a body to the base that are assigned to `finger`. Each joint is
-/// assigned to the nearest finger between it, inclusive, and the base; joints without such a finger are
-/// assigned to the finger on the path that is nearest to the base.
+/// assigned to the first finger on the path from this joint to the base; joints without such a finger are
+/// assigned to the finger on the whole path that is nearest to the base.
 fn joints_of<'a>(
     finger: &'a Finger,
     body: usize,

@@ -82,7 +82,7 @@ impl Bodies {
         })
     }
 
-    /// Returns the bodies that exist in a system, for the error about a body that does not exist.
+    /// Returns the clause of an error message that states which bodies a system has.
     pub(crate) fn known(&self, system: usize) -> String {
         self.layout.known(system)
     }

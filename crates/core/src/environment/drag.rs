@@ -46,9 +46,9 @@ impl Drag {
         Self { atmosphere, surfaces, cached }
     }
 
-    /// Returns the local atmosphere about the grid point nearest to `r`, or about `r` itself at time `t`, s,
-    /// if the model is not defined at the grid point. `r` is the position, axes of `I`, m, of the base of the
-    /// system with the number `system`.
+    /// Returns the local atmosphere about the grid point nearest to `r` at the last grid time, or about `r`
+    /// itself at time `t`, s, if the model is not defined there. `r` is the position, axes of `I`, m, of the
+    /// base of the system with index `system`.
     fn local(
         &self,
         system: usize,

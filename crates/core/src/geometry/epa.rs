@@ -37,12 +37,14 @@ impl PartialOrd for Entry {
     }
 }
 
-/// Returns the unit vector `n` for which the support function `s(n)ᵀ n` of a convex set is least, accurate to
-/// first order in the remaining error; `None` if the set is flat or a coordinate is not finite. `farthest`
-/// returns the point `s(d)`.
+/// Returns the unit vector `n` for which the support function `s(n)ᵀ n` of a convex set is least; `None` if
+/// the set is flat or a coordinate is not finite. `farthest` returns `s(d)`, the farthest point of the set in
+/// the direction `d`. The iteration ends when the bounds of the minimum agree within [`CONVERGED`], or
+/// earlier with the best direction found so far, because of rounding or after [`STEPS`] steps.
 ///
-/// The polytope inside the set grows at its triangle with the least signed distance from the origin, which is
-/// a lower bound of the result; the support function in the direction of its normal is an upper bound.
+/// The polytope inside the set is extended at the triangle whose plane has the least signed distance from the
+/// origin. This distance is a lower bound of the minimum; the support function in the direction of the normal
+/// of the triangle is an upper bound.
 pub(super) fn least_support(farthest: impl Fn(Vec3<f64>) -> Vec3<f64>) -> Option<Vec3<f64>> {
     let mut polytope = Polytope::default();
     if !polytope.start(spread(&farthest)?) {

@@ -76,7 +76,7 @@ pub enum GravityError {
     Twice { file: String, line: usize, degree: usize, order: usize },
     #[error(
         "{file}:{line}: '{key}' makes the field vary with time; evaluate the model at your epoch and write it \
-         with rows 'gfc'{lower}",
+         with 'gfc' rows only{lower}",
         lower = lower_degree(*degree)
     )]
     VariesWithTime { file: String, line: usize, key: String, degree: usize },

@@ -176,7 +176,8 @@ fn empty_node() -> Node {
     }
 }
 
-/// Adds the mass of a link to its body, and its inertia about the new common centre of mass.
+/// Adds the mass and the inertia of a link to those of its body. The resulting inertia is about the new
+/// common centre of mass.
 fn merge(node: &mut Node, inertial: &Inertial, place: &Placed) {
     let com: Vec3<f64> = (place.rot * inertial.com + place.pos).into();
     let about_com = Sym3::from(place.rot * usable_inertia(inertial) * place.rot.transpose());

@@ -80,10 +80,8 @@ impl Model {
         if length >= SHORTEST {
             return Ok(length);
         }
-        let (what, expected) = (
-            "the length",
-            "at least 1e-6 m between the frames at zero joint positions, or a given length",
-        );
+        let (what, expected) =
+            ("the length", "at least 1e-6 m between the frames at zero joint positions, or a given length");
         Err(ModelError::OutOfRange { what, name: name.to_owned(), value: length, expected })
     }
 

@@ -78,7 +78,7 @@ pub struct Model {
     pub(super) nodes: Vec<Node>,
     pub(super) joints: Vec<JointProperties>,
     pub(super) frames: Vec<Frame>,
-    /// For each body, the index of the frame of the link that names it.
+    /// For each body, the index of the frame of the link whose name the body has.
     pub(super) body_frames: Vec<usize>,
     pub(super) visuals: Vec<(usize, Visual)>,
     pub(super) collisions: Vec<(usize, Visual)>,

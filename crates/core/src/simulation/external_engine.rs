@@ -53,7 +53,7 @@ impl<'a> ExternalEngine<'a> {
     }
 
     /// Returns the acceleration of the system with index `system` at the start of the last step, `(nv,)`,
-    /// m/s² and rad/s²; `None` if that step failed.
+    /// m/s² and rad/s²; `None` if there was no step or the last one failed.
     pub(super) fn first_acceleration(&self, system: usize) -> Option<&[f64]> {
         let [_, range] = &self.ranges[system];
         self.has_output.then(|| &self.output.acceleration[range.clone()])

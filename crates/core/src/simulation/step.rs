@@ -134,9 +134,9 @@ impl<S: Scalar> RunState<'_, S> {
         }
     }
 
-    /// Finds the systems whose controllers are due at `t`, s. Controllers are due at their ticks and when an
-    /// event starts a control. If a trial step has already updated controllers at this cut, they are due
-    /// again only after a new command. Returns true if any controllers are due.
+    /// Marks the systems whose controllers are due at `t`, s, and returns true if there are any. Controllers
+    /// are due at their ticks and when an event starts a control. If a trial step has already updated
+    /// controllers at this cut, they are due again only at a tick and after a new command.
     #[inline(never)]
     fn find_due(&mut self, t: f64) -> bool {
         let is_repeated = self.controllers_updated;

@@ -7,13 +7,13 @@ pub(super) const FAST_SINE_LIMIT: f64 = 1e5;
 
 /// Returns the sine and cosine of `x`, rad, for `|x| < 1e5`.
 ///
-/// Reduces the angle to `r = x − k π/2` with `|r| ≤ π/4` by subtracting π/2 in three parts (Cody and Waite),
+/// Reduces the angle to `r = x − k π/2` with `|r| ≤ π/4` by subtracting `k π/2`, with π/2 in three parts (Cody and Waite),
 /// then evaluates the minimax polynomials of FreeBSD's `k_sin.c` and `k_cos.c`.
 #[inline(always)]
 pub(super) fn sin_cos<S: Real>(x: S) -> (S, S) {
     const ROUND: f64 = 6_755_399_441_055_744.0; // 1.5 · 2^52: adding it rounds to an integer
     let k = x.mul_add(S::of(std::f64::consts::FRAC_2_PI), S::of(ROUND)) - S::of(ROUND);
-    // π/2 in three parts of at most 33 bits, so that k · part is exact
+    // the first two parts of π/2 have at most 33 bits, so that k · part is exact
     let r = k.mul_add(S::of(-1.570_796_326_734_125_6), x);
     let r = k.mul_add(S::of(-6.077_100_506_303_966e-11), r);
     let r = k.mul_add(S::of(-2.022_266_248_795_950_6e-21), r);

@@ -111,7 +111,10 @@ def row() -> list[float]:
 
 
 def elastic() -> list[float]:
-    """Return the errors of the restitution without dissipation for exponents 1 and 1.5, at 0.2 m/s."""
+    """Return the errors of the coefficient of restitution for exponents 1 and 1.5, at 0.2 m/s.
+
+    Without dissipation, the exact value is 1.
+    """
     traces = (balls(oo.HuntCrossley(k, n), (BALLS, BALLS), 2.0 * CLOSING) for n, k in LAWS)
     return [abs(float(t["b"].v[-1, 0] - t["a"].v[-1, 0]) / (2.0 * SPEED) - 1.0) for t in traces]
 

@@ -12,7 +12,7 @@ pub struct Layer {
     pub base: f64,
     /// Density at the base, kg/m³.
     pub density: f64,
-    /// Altitude difference over which the density decreases by the factor e, m.
+    /// Altitude difference, m, over which the density decreases by a factor of e.
     pub scale_height: f64,
 }
 

@@ -82,7 +82,7 @@ pub enum UrdfProblem {
          that URDF does not define"
     )]
     TooManyAttributes { limit: usize },
-    #[error("the file is not UTF-8 text (its byte {at} is invalid); save it as UTF-8")]
+    #[error("the file is not UTF-8 text (the byte at offset {at} is invalid); save it as UTF-8")]
     NotUtf8 { at: usize },
     #[error("the text is not XML ({reason}); correct the text at this line")]
     NotXml { reason: String },
