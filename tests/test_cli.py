@@ -120,7 +120,8 @@ def test_text_in_brackets_is_not_markup(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["x.jpg", "x", "x.png.svg"])
 def test_a_picture_without_the_extension_png_is_rejected(tmp_path: Path, name: str) -> None:
     (tmp_path / "summary.json").write_text('{"simulated_s": 1.0}')
-    assert f"--picture: the file name {name} must end in .png" in refusal("show", ".", "--picture", name, cwd=tmp_path)
+    expected = f"--picture: the file name {name} must end in .png"
+    assert expected in refusal("show", ".", "--picture", name, cwd=tmp_path)
     assert not (tmp_path / name).exists()
 
 

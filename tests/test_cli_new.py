@@ -177,9 +177,7 @@ def test_a_motion_is_as_slow_as_the_effort_limits_require(tmp_path: Path) -> Non
     assert summary["joint_efforts_exceeded"] == ""
     sticky = dynamics(urdf.replace('effort="100"', 'effort="1"'), 'friction="2"')
     text, summary = drafted(sticky, tmp_path)
-    assert (
-        "# Joints that exceed their effort limits however slow the motion is: j0, j1, j2\n" in text
-    )
+    assert "# Joints that exceed their effort limits however slow the motion is: j0, j1, j2\n" in text
     assert summary["joint_efforts_exceeded"] == "j0, j1, j2"
 
 

@@ -150,7 +150,4 @@ def test_the_command_writes_external_controllers(tmp_path: Path) -> None:
     assert re.search(
         r'kind: "external" +# .*: type: effort_controllers/JointGroupEffortController', done.stdout
     )
-    assert (
-        "PID gains do not apply to computed torque, whose gains are kp 100 1/s², kd 20 1/s"
-        in done.stderr
-    )
+    assert "PID gains do not apply to computed torque, whose gains are kp 100 1/s², kd 20 1/s" in done.stderr

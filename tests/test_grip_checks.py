@@ -71,7 +71,9 @@ def test_an_object_wider_than_the_jaws_open(radius: float, fits: bool) -> None:
     if fits:
         jaws(shape=shape)
         return
-    with pytest.raises(ControlError, match=r"largest opening of the gripper is 0.12 m, but .* thing/body is 0.122 m wide"):
+    with pytest.raises(
+        ControlError, match=r"opening of the gripper is 0.12 m, but .* thing/body is 0.122 m wide"
+    ):
         jaws(shape=shape)
 
 

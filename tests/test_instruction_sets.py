@@ -68,8 +68,8 @@ DIGESTS = """
 import json, sys
 sys.path.insert(0, "tests")
 import recorded_bits
-robot, world = recorded_bits._of_scenario("humanoid_reach"), recorded_bits._of_world("capture_tumbling_target")
-print(json.dumps([robot, world]))
+robot = recorded_bits._of_scenario("humanoid_reach")
+print(json.dumps([robot, recorded_bits._of_world("capture_tumbling_target")]))
 """
 
 

@@ -114,7 +114,10 @@ class ConicOrbit(Part):
         if a is None:
             return
         if e == 1.0:
-            raise invalid("a parabola (eccentricity 1) has no semi-major axis; replace 'semi_major_axis' by 'semi_latus_rectum'")
+            raise invalid(
+                "a parabola (eccentricity 1) has no semi-major axis; replace 'semi_major_axis' by "
+                "'semi_latus_rectum'"
+            )
         if (a > 0.0) != (e < 1.0):
             right = (
                 "positive below eccentricity 1" if e < 1.0 else "negative above eccentricity 1 (a hyperbola)"

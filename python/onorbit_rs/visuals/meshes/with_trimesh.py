@@ -57,8 +57,8 @@ def _stl(content: bytes) -> bytes:
     there = max(len(content) - _STL_HEADER, 0) // _STL_TRIANGLE
     if there < declared:
         raise ValueError(
-            f"it is not a complete STL file: it declares {declared} triangles but contains {there}; export or "
-            "download the mesh again"
+            f"it is not a complete STL file: it declares {declared} triangles but contains {there}; export "
+            "or download the mesh again"
         )
     return content
 
