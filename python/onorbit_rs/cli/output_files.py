@@ -51,7 +51,7 @@ def check_bag_file(option: str, file: Path | None, suffix: str, *, force: bool) 
     """
     if file is not None and file.suffix != suffix:
         raise InputError(
-            f"{option} {file} must end in {suffix}, by which readers recognise the format",
+            f"{option}: the file name {file} must end in {suffix}, by which readers recognise the format",
             name=option.lstrip("-"), got=file.suffix, expected=suffix,
         )  # fmt: skip
     check_output_file(file, force=force)

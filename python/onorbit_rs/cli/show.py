@@ -61,7 +61,7 @@ def show(
 
     if picture is not None and picture.suffix.lower() != ".png":
         raise InputError(
-            f"--picture {picture} must end in .png, the only supported format",
+            f"--picture: the file name {picture} must end in .png, the only supported format",
             name="picture", got=picture.suffix, expected=".png",
         )  # fmt: skip
     view = View.of(at, size, eye, look_at, is_collision=collision)
