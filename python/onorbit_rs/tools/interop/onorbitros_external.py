@@ -44,9 +44,7 @@ def read_driven(source: Source) -> None:
     what = "JointTrajectory messages" if "Trajectory" in str(source.data["type"]) else f"{interface} commands"
     source.note("type", "understood", f"{what}: send them to {_topic(source)} of onorbit ros2")
     kept = f"kp {KP:g} 1/s², kd {KD:g} 1/s" if interface == "position" else f"kd {KD:g} 1/s"
-    source.note(
-        key, "corrected", f"PID gains do not apply to computed torque, whose gains are {kept}"
-    )
+    source.note(key, "corrected", f"PID gains do not apply to computed torque, whose gains are {kept}")
     for extra in PID_KEYS[5:]:
         if extra in source.data:
             source.note(
