@@ -179,6 +179,10 @@ SHORT = [*states()[:5], state(1.7e9 + 1, NAMES, [1, 2])]
 NAN = state(2e9, NAMES, [np.nan] * 7, [0] * 7)
 PART = [*states()[:5], state(1.7e9 + 1, NAMES[:3], [1, 2, 3])]
 
+OTHER = [state(1.7e9 + time, ["lamp"], [0]) for time in TIMES[:3]]
+STILL = trajectory()
+STILL.points[4].time_from_start = STILL.points[2].time_from_start
+
 TWICE = [state(1.7e9 + time, [NAMES[0], NAMES[0]], [0, 1]) for time in TIMES]
 
 INVALID: dict[str, tuple[dict[str, list[Any]], dict[str, Any], type[OnOrbitError], str]] = {
@@ -190,6 +194,10 @@ INVALID: dict[str, tuple[dict[str, list[Any]], dict[str, Any], type[OnOrbitError
     ),
     "one message": ({"/a": ONE}, {}, ReadError, "have different times; found: 1"),
     "back in time": ({"/a": BACK}, {}, ReadError, r"message 6 is at 0.04 s, after 0.08 s"),
+    "back in time, after others": (
+        {"/a": OTHER + BACK}, {"joints": {name: name for name in NAMES}}, ReadError, "message 9 is at 0.04 s",
+    ),
+    "trajectory back in time": ({"/a": [STILL]}, {}, ReadError, r"point 5 is at 0.04 s, after 0.06 s"),
     "doubled": ({"/a": TWICE}, {}, ReadError, f"message 1 names {NAMES[0]} more than once"),
     "too short": ({"/a": SHORT}, {}, ReadError, "in message 6 are 7, 2 and 0; give one position"),
     "only some": ({"/a": PART}, {}, ReadError, "message 6 lacks arm_joint_4, "),

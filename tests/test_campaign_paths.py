@@ -113,6 +113,14 @@ def test_an_attitude_is_turned_by_a_rotation_vector() -> None:
         np.testing.assert_allclose(axis * angle, list(values.values()), rtol=1e-12)
 
 
+def test_the_angles_of_an_attitude_may_be_a_choice() -> None:
+    angles = {0.0, np.radians(2.0), -0.1}
+    found = plan(BODY, {"initial.attitude": {"add": {"choice": [0, "2 deg", -0.1]}}}, cases=40)
+    drawn = [tuple(found.case(number).values.values()) for number in range(40)]
+    assert {angle for one in drawn for angle in one} == angles
+    assert any(len(set(one)) > 1 for one in drawn)  # one draw per axis
+
+
 def test_joints_may_be_named_in_a_list_and_in_a_world() -> None:
     found = plan(reach(), {"initial.joints.arm_joint_[!3-7]": NORMAL})
     assert found.value_names == ["initial.joints.arm_joint_1", "initial.joints.arm_joint_2"]
@@ -152,6 +160,8 @@ def test_the_nominal_data_are_not_changed() -> None:
         ("initial.joints", {"add": {"normal": [0, "1 mm"]}}, "is revolute; give an angle"),
         ("initial.position", {"add": {"normal": [0, "1 deg"]}}, "is not a length"),
         ("initial.attitude", {"add": {"normal": [0, "1 m"]}}, "is not an angle"),
+        ("initial.attitude", {"add": {"choice": [0, "1 m"]}}, "is not an angle"),
+        ("initial.attitude", {"add": {"choice": [0, "1 m"]}, "vector": "direction"}, "is not an angle"),
         (
             "initial.attitude",
             {"scale": {"normal": [1, 0.1]}},

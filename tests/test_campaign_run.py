@@ -337,6 +337,11 @@ def test_the_command_writes_the_files_and_the_folder_of_a_case(
     assert done.returncode == 0, done.stderr
     assert "success: 5 of 5, 100.0% (95 % confidence: 56.6% to 100.0%)" in done.stdout
     assert {"cases.parquet", "campaign.yaml"} <= {path.name for path in out.iterdir()}
+    assert "next:" not in done.stdout
+    strict = write(spin(success={"base_rotation_max_rad": {"below": 0}}), tmp_path / "strict.yaml")
+    for options, said in (([], ""), (["--cases", "5"], " --cases 5")):
+        failing = onorbit("campaign", str(strict), *options)
+        assert f"next: onorbit campaign {strict}{said} --case 0 --out DIR" in failing.stdout
     alone = onorbit("campaign", str(file), "--case", "2", "--out", str(tmp_path / "case"), "--json")
     assert alone.returncode == 0, alone.stderr
     assert (tmp_path / "case" / "run.rrd").exists()

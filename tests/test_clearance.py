@@ -132,3 +132,19 @@ def test_bad_watches_say_what_is_wrong() -> None:
         oo.clearances(bare, rest, [oo.KeepOut("z", oo.Shape.sphere(1), "base")])
     with pytest.raises(InputError, match="is not a rotation"):
         oo.KeepOut("z", oo.Shape.sphere(1), "body", pose=2 * np.eye(4))
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"links": 5}, "links is 5; expected the name of a link"),
+        ({"links": ["body", 5]}, "expected the name of a link"),
+        ({"pose": "here"}, r"pose of the zone 'z' is 'here'; expected a \(4, 4\) array"),
+        ({"pose": [[1, 2], [3]]}, r"expected a \(4, 4\) array"),
+        ({"pose": np.diag([1.0, 1.0, -1.0, 1.0])}, "is not a rotation; .* determinant 1"),
+        ({"pose": at(1.0).T}, r"the last row .* is \(1, 0, 0, 1\), not \(0, 0, 0, 1\)"),
+    ],
+)
+def test_bad_arguments_of_a_zone_are_input_errors(given: dict[str, Any], words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        oo.KeepOut(**({"name": "z", "shape": oo.Shape.sphere(1), "links": "body"} | given))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,8 @@ from world_runs import data
 import onorbit_rs as oo
 from onorbit_rs.exceptions import CompareError
 from onorbit_rs.tools.comparison import WorldComparison
+from onorbit_rs.tools.comparison.recorded import RecordedWorld, recorded
+from onorbit_rs.tools.comparison.world import compared_worlds
 
 pytestmark = pytest.mark.usefixtures("no_pictures")
 
@@ -131,3 +134,21 @@ def test_the_command_prints_each_system_and_each_event(folder: Path, tmp_path: P
     assert [line.split() for line in text.splitlines()[1:]] == [line.split() for line in lines[1:-2]]
     same = onorbit("compare", folder, folder, "--json")
     assert same.returncode == 0 and json.loads(same.stdout)["agrees"] is True
+
+
+def test_a_peak_force_that_one_run_lacks_is_not_compared() -> None:
+    first = recorded(oo.run(data(), quiet=True))
+    assert isinstance(first, RecordedWorld)
+
+    def with_peak(force: float | None) -> RecordedWorld:
+        hit = oo.EventRecord("hit", "lift_off", 0.1, ("chaser", "target"), impulse=np.zeros(6),
+                             point=np.zeros(3), energy_lost=0.0, momentum_error=np.zeros(2),
+                             peak_force=force)  # fmt: skip
+        return replace(first, events=[hit])
+
+    for pair in ((3.0, None), (None, 3.0)):
+        found = compared_worlds(*map(with_peak, pair), 1e-6, [])
+        assert found.agrees and [event.quantity for event in found.events].count("peak force") == 0
+        note = "the peak force of event 'hit (lift-off)' is not compared: only one of the runs has it"
+        assert note in found.notes and len(found.events) == 5
+    assert not compared_worlds(with_peak(3.0), with_peak(4.0), 1e-6, []).agrees

@@ -20,6 +20,7 @@ import onorbit_rs as oo
 from onorbit_rs import figures
 from onorbit_rs.cli import main
 from onorbit_rs.exceptions import CheckpointError, InputError
+from onorbit_rs.output.latches import _parting
 from onorbit_rs.output.read import SavedRun
 from onorbit_rs.ros2.events import message_of_event
 from onorbit_rs.ros2.publisher import Publisher
@@ -228,6 +229,26 @@ def test_figures_mark_only_captures_and_releases(bounced: Any) -> None:
         figure = figures.energy_exchange(bounced.trace, ["walls", "b"], events)
         assert len(figure.axes) == panels
     assert [text.get_text() for text in figure.axes[1].get_yticklabels()] == ["grasp"]
+
+
+def test_a_contact_that_ends_beside_another_one_does_not_undo_the_parting() -> None:
+    """The systems part at 2 s; later one of two contacts ends while the other still touches."""
+    times = {("down", "p"): 1.0, ("off", "p"): 2.0, ("DOWN", "p"): 3.0, ("down", "q"): 3.1, ("OFF", "p"): 4.0}
+    kinds = {"down": "touch_down", "off": "lift_off"}
+    events = [
+        SimpleNamespace(name=name, kind=kinds[kind.lower()], time=time, systems=("a", "b"))
+        for (kind, name), time in times.items()
+    ]
+
+    class Trace(dict[str, Any]):
+        time = np.arange(6.0)
+
+    rows = np.outer(np.arange(6.0), np.ones(6))
+    trace: Any = Trace({name: SimpleNamespace(momentum=rows, v=rows) for name in "ab"})
+    trace.events = events
+    system = SimpleNamespace(model=SimpleNamespace(mass=1.0))
+    built: Any = SimpleNamespace(systems={"a": system, "b": system})
+    assert _parting(trace, built, ["a", "b"], 5.0)["parted_s"] == 2.0
 
 
 def test_runs_with_contacts_are_compared_by_their_first_touches(bounced: Any, tmp_path: Path) -> None:

@@ -19,6 +19,7 @@ from onorbit_rs.scenario.build import build
 from onorbit_rs.tools.interop import expressions as arithmetic
 from onorbit_rs.tools.interop.expressions import evaluate
 from onorbit_rs.tools.interop.onorbitros import Conversion, convert
+from onorbit_rs.tools.interop.source import Source
 
 # in the format of OnOrbitROS, with its two misspelt keys
 ORBIT = """\
@@ -256,7 +257,7 @@ BAD: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "unknown key": (
         "semi_major_axes: 7000",
         "ScenarioError",
-        (":1:", "semi_major_axes", "semi_major_axis", "--keep-going"),
+        (":1:", "semi_major_axes", "semi_major_axis", "use keep_going=True to ignore it"),
     ),
     "unknown key inside": (
         CONTROL.replace("kp_value: 1000", "kp_valeu: 1000"),
@@ -362,3 +363,12 @@ def test_the_command(tmp_path: Path) -> None:
     assert onorbit(*made, "--force", cwd=tmp_path).returncode == 0
     refused = onorbit("convert", "nothing.yaml", cwd=tmp_path)
     assert (refused.returncode, len(refused.stderr.splitlines())) == (2, 1)
+    write(tmp_path, odd="semi_major_axes: 7000")
+    assert "use --keep-going to ignore it" in onorbit("convert", "odd.yaml", cwd=tmp_path).stderr
+
+
+def test_a_missing_number_without_a_default_is_an_error_of_the_file(tmp_path: Path) -> None:
+    source = Source(tmp_path / "a.yaml", {}, ("arm",), {}, False, [])
+    assert source.number("kp", 2.0) == 2.0
+    with pytest.raises(oo.exceptions.ScenarioError, match=r"a\.yaml: arm\.kp: is missing; give a number"):
+        source.number("kp")

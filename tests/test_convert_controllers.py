@@ -83,7 +83,7 @@ def test_controllers_that_share_joints_are_alternatives(tmp_path: Path) -> None:
     done = convert([*write(tmp_path, control="talos:\n" + shared), DUAL])
     assert done.scenario["tool"] == "right_tool" and "controllers" not in done.scenario
     (texts,) = (note.text for note in done.notes if note.key == "left_arm_controller")
-    assert "drives joints of another controller" in texts and "--controller" in texts
+    assert "drives joints of another controller" in texts and "choose one with controller=" in texts
 
 
 def test_a_list_of_controllers_is_written_with_its_lines(tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ import json
 import subprocess
 import sys
 from pathlib import Path
+from textwrap import indent
 from typing import Any
 
 import pytest
@@ -76,6 +77,7 @@ def test_code_of_bundled_examples_is_not_announced(tmp_path: Path) -> None:
     assert json.loads(done.stdout)["code_not_run"] == []
 
 
+NONE: dict[str, Any] = {"arguments": {}}
 CLASS = "class Brake:\n    def update(self, t, state):\n        return state.v[6:]\n"
 WRONG: dict[str, tuple[str, dict[str, Any], type[OnOrbitError], str]] = {
     "no file": (CLASS, {"file": "none.py"}, NotFoundError, "no such file"),
@@ -83,6 +85,12 @@ WRONG: dict[str, tuple[str, dict[str, Any], type[OnOrbitError], str]] = {
     "zeros": ("\0", {}, ControlError, "cannot be read as Python"),
     "deep": ("(" * 5000, {}, ControlError, "cannot be read as Python"),
     "no class": (CLASS, {"class": "Brakes"}, ControlError, "did you mean 'Brake'"),
+    "no update in try": (
+        "try:\n    class Brake:\n        pass\nfinally:\n    x = Brake",
+        {},
+        ControlError,
+        "has no method update",
+    ),
     "no update": ("class Brake:\n    pass", {}, ControlError, "has no method update"),
     "abstract": (
         "import onorbit_rs as oo\nclass Brake(oo.Controller):\n    pass",
@@ -115,6 +123,13 @@ def test_check_finds_errors_without_running_the_code(name: str, tmp_path: Path) 
         build(load(scenario(tmp_path, source, **changes)), runs_code=False)
 
 
+def test_a_class_with_other_abstract_methods_is_refused_by_their_names(tmp_path: Path) -> None:
+    source = "from abc import ABC, abstractmethod\n" + CLASS.replace("Brake:", "Brake(ABC):")
+    source += "    @abstractmethod\n    def gains(self):\n        pass\n"
+    with pytest.raises(ControlError, match="is abstract: it does not define gains; define"):
+        build(load(scenario(tmp_path, source, arguments={})))
+
+
 FINE: dict[str, tuple[str, dict[str, Any]]] = {
     "inherits": (SOURCE, {"arguments": {"gain": 1, "bias": 2}}),
     "imported": ("from elsewhere import Brake", {}),
@@ -124,6 +139,12 @@ FINE: dict[str, tuple[str, dict[str, Any]]] = {
     "decorated": ("from d import dataclass\n@dataclass\n" + CLASS + "    gain: float = 1\n", {}),
     "keywords": (CLASS + "    def __init__(self, **any):\n        pass", {}),
     "in try": ("try:\n    import x\nexcept ImportError:\n    pass\nelse:\n    from x import Brake\n", {}),
+    "in except": (f"try:\n    import x\nexcept ImportError:\n{indent(CLASS, '    ')}", NONE),
+    "in match": (f"match 1:\n    case 1:\n{indent(CLASS, ' ' * 8)}", NONE),
+    "base in except": (
+        "try:\n    from x import Base\nexcept ImportError:\n    class Base: pass\nclass Brake(Base): pass",
+        NONE,
+    ),
     "module": (CLASS, {"file": None, "module": "collections", "class": "Counter", "arguments": {}}),
     "compiled": (CLASS, {"file": None, "module": "math", "class": "Brake"}),
 }

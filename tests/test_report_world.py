@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import pytest
 from results import listed
@@ -13,6 +14,8 @@ from world_runs import data
 
 import onorbit_rs as oo
 from onorbit_rs.report import write_report
+from onorbit_rs.report.subjects import _around
+from onorbit_rs.scenario import load
 
 HIDDEN = ("scenario", "status", "warnings", "rereferenced", "joint_dissipation_j")
 
@@ -91,3 +94,16 @@ def test_a_world_without_events_has_a_report(tmp_path: Path) -> None:
     assert "No event happened." in text
     # every system is a group, whose certificate is its own
     assert "Groups of systems" not in text and "no certificate" not in text
+
+
+def test_an_earth_that_cannot_be_read_omits_only_the_ground_track(tmp_path: Path) -> None:
+    scenario = load({
+        "robot": "ball", "orbit": {"kind": "kepler", "semi_major_axis": "7000 km"},
+        "epoch": "2024-03-01T12:00:00 UTC", "earth": {"eop": "gone.txt"}, "simulation": {"duration": 1},
+    })  # fmt: skip
+    saved: Any = SimpleNamespace(folder=tmp_path)
+    remarks: list[str] = []
+    orbit, earth = _around(saved, cast("Any", scenario), remarks)
+    assert orbit is not None and earth is None
+    (remark,) = remarks
+    assert remark.startswith("the ground track is omitted, because the Earth could not be read (")

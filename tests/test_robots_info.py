@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from border import joint, massive, urdf
-from commands import onorbit
+from commands import onorbit, refusal
 from rich.console import Console
 
 import onorbit_rs as oo
-from onorbit_rs.cli.robot_info import print_info
+from onorbit_rs.cli.robot_info import _mimic, print_info
 from onorbit_rs.robots.describe import describe
 
 MODEL = oo.robots.load("humanoid_dual_arm")
@@ -125,6 +125,7 @@ def test_a_chain_of_500_links_is_printed_completely() -> None:
         (["humanoid_tors"], ("humanoid_torso",)),
         (["/nowhere/robot.urdf"], ("/nowhere/robot.urdf", "no such file")),
         (["humanoid_torso", "--arg", "side"], ("NAME=VALUE",)),
+        (["humanoid_reach", "--arg", "side=left"], ("humanoid_reach is a scenario", "omit them")),
     ],
 )
 def test_an_error_is_reported_in_one_line(arguments: list[str], words: tuple[str, ...]) -> None:
@@ -132,3 +133,16 @@ def test_an_error_is_reported_in_one_line(arguments: list[str], words: tuple[str
     assert done.returncode == 2
     assert len(done.stderr.splitlines()) == 1
     assert all(word in done.stderr for word in words), done.stderr
+
+
+def test_options_of_robot_files_are_refused_for_a_scenario_in_a_folder(tmp_path: Path) -> None:
+    file = tmp_path / "mine.yaml"
+    file.write_text("robot: ball\nsimulation: {duration: 1 s}\n")
+    assert onorbit("info", file).stdout.endswith(f"next: onorbit run {file} --out DIR\n")
+    for options in (["--package-path", str(tmp_path)], ["--arg", "a=1"], ["--xacro"]):
+        assert f"{file} is a scenario; omit them" in refusal("info", file, *options)
+
+
+@pytest.mark.parametrize(("offset", "end"), [(0.2, "3 left + 0.2"), (-0.2, "3 left - 0.2"), (0.0, "3 left")])
+def test_the_equation_of_a_mimic_joint_has_the_sign_of_its_offset(offset: float, end: str) -> None:
+    assert _mimic("right", "left", 3.0, offset) == f"mimic joint: right = {end}"

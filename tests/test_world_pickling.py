@@ -19,6 +19,7 @@ from world_runs import data
 import onorbit_rs as oo
 from onorbit_rs.exceptions import InputError, ShapeError, WorldError
 from onorbit_rs.output.read import SavedRun
+from onorbit_rs.output.saved_world import SavedWorldTrace
 
 pytestmark = pytest.mark.usefixtures("no_pictures")
 
@@ -48,8 +49,10 @@ def test_a_pickled_trace_is_complete() -> None:
         assert other[name].certificate() == trace[name].certificate()
         with pytest.raises(ValueError, match="read-only"):
             other.momentum[0] = 0.0
-        with pytest.raises(WorldError, match="no system 'x'"):
+        with pytest.raises(WorldError, match="no system 'x'; the systems are: "):
             other["x"]
+    with pytest.raises(WorldError, match="no system 'x'; the only system is 'a'"):
+        SavedWorldTrace({"a": None}, [], *[np.zeros(1)] * 3)["x"]
 
 
 def test_the_trace_is_copied_with_the_engine_alone() -> None:

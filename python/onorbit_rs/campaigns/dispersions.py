@@ -68,9 +68,7 @@ class NumberDispersion(Dispersion):
 
     def apply(self, data: dict[str, Any], us: Sequence[float]) -> tuple[Any, ...]:
         """Change the number; the dispersed value is the new one."""
-        choice = self.distribution.choice
-        drawn = self.distribution.value(us[0]) if choice is None else float(self.distribution.pick(us[0]))
-        value = changed(self.how, self.nominal, drawn)
+        value = changed(self.how, self.nominal, self.distribution.value(us[0]))
         put(data, self.at, value)
         return (value,)
 
@@ -99,8 +97,7 @@ class FactorDispersion(Dispersion):
 
     def apply(self, data: dict[str, Any], us: Sequence[float]) -> tuple[Any, ...]:
         """Scale the entry; the dispersed value is the factor."""
-        choice = self.distribution.choice
-        factor = self.distribution.value(us[0]) if choice is None else float(self.distribution.pick(us[0]))
+        factor = self.distribution.value(us[0])
         put(data, self.at, (np.array(self.nominal, dtype=np.float64) * factor).tolist())
         return (factor,)
 
@@ -129,8 +126,7 @@ class DirectionDispersion(Dispersion):
         The height `z = 2 u − 1` of a point that is uniformly distributed on the sphere is uniformly
         distributed (Archimedes).
         """
-        choice = self.distribution.choice
-        size = self.distribution.value(us[0]) if choice is None else float(self.distribution.pick(us[0]))
+        size = self.distribution.value(us[0])
         z, longitude = 2.0 * us[1] - 1.0, 2.0 * math.pi * us[2]
         flat = math.sqrt(max(0.0, 1.0 - z * z))
         drawn = (size * flat * math.cos(longitude), size * flat * math.sin(longitude), size * z)

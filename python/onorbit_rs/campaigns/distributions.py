@@ -132,12 +132,14 @@ class Distribution(Part):
         return self.uniform or self.within
 
     def value(self, u: float) -> float:
-        """Return the value, in SI units, whose cumulative probability is ``u``.
+        """Return the number, in SI units, whose cumulative probability is ``u``.
 
         It is `x = a + u (b − a)` for a uniform distribution and `x = µ + σ Φ⁻¹(u)` for a normal one. If
         ``within`` has the bounds `a` and `b`, `u` is first mapped to `Φ(α) + u [Φ(β) − Φ(α)]`, where
-        `α = (a − µ)/σ` and `β = (b − µ)/σ`.
+        `α = (a − µ)/σ` and `β = (b − µ)/σ`. The values of ``choice`` must be numbers.
         """
+        if self.choice is not None:
+            return float(self.pick(u))
         if self.uniform is not None:
             first, last = map(float, self.uniform)
             return min(first + u * (last - first), last)

@@ -194,8 +194,8 @@ class Expander:
                 "the angle about each body axis, or 'set' with 'choice'",
             )
         distribution = self._numeric(path, change)
-        for amount_ in distribution.amounts:
-            self._parsed(path, amount_, units.ANGLE)
+        for number in [*distribution.amounts, *(distribution.choice or ())]:
+            self._parsed(path, number, units.ANGLE)
         names = tuple(f"{place.name}[{axis}]" for axis in range(3))
         quat = tuple(map(float, quaternion_of(place.value)))
         return RotationDispersion(place.at, names, distribution, quat, change.vector == "direction")

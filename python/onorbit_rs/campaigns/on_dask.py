@@ -148,7 +148,7 @@ def _client(address: str, workers: int) -> Iterator[Any]:
         except (OSError, TimeoutError, ValueError) as error:
             raise CampaignError(
                 f"no Dask scheduler answers at {address} ({type(error).__name__}); start one with 'dask "
-                "scheduler', or use --cluster local",
+                "scheduler', or give 'local' for a cluster on this machine",
                 reason="no cluster",
             ) from error
         try:

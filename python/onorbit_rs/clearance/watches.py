@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -12,20 +13,50 @@ from onorbit_rs.exceptions import InputError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
     from onorbit_rs._core import Shape
 
 
 def _patterns(links: str | Sequence[str], name: str) -> tuple[str, ...]:
     """Return one or several patterns as a tuple; raise an InputError if there is none, or one is not text."""
-    found = (links,) if isinstance(links, str) else tuple(links)
+    found = (links,) if isinstance(links, str) or not isinstance(links, Iterable) else tuple(links)
     if not found or not all(isinstance(link, str) for link in found):
         message = (
             f"{name} is {links!r}; expected the name of a link, such as 'chaser/gripper*', or a list of names"
         )
         raise InputError(message, name=name, got=links)
     return found
+
+
+def _pose(given: ArrayLike, zone: str) -> NDArray[np.float64]:
+    """Return the pose of a zone as a (4, 4) array; raise an InputError if it is not a rigid motion."""
+    try:
+        pose = np.array(given, dtype=np.float64)
+    except (TypeError, ValueError):
+        message = f"the pose of the zone {zone!r} is {given!r:.60}; expected a (4, 4) array of numbers, m"
+        raise InputError(message, name="pose", got=given) from None
+    if pose.shape != (4, 4):
+        message = f"the pose of the zone {zone!r} has shape {pose.shape}; expected (4, 4)"
+        raise InputError(message, name="pose", got=pose.shape)
+    if not np.isfinite(pose).all():
+        message = f"the pose of the zone {zone!r} contains infinity or NaN; give finite numbers"
+        raise InputError(message, name="pose", got=zone)
+    rotation = pose[:3, :3]
+    if not np.allclose(rotation @ rotation.T, np.eye(3), atol=1e-6) or np.linalg.det(rotation) < 0.0:
+        message = (
+            f"the upper left 3 x 3 block of the pose of the zone {zone!r} is not a rotation; give an "
+            "orthogonal matrix with determinant 1"
+        )
+        raise InputError(message, name="pose", got=zone)
+    if not np.allclose(pose[3], (0.0, 0.0, 0.0, 1.0), atol=1e-6):
+        last = ", ".join(f"{part:g}" for part in pose[3])
+        message = (
+            f"the last row of the pose of the zone {zone!r} is ({last}), not (0, 0, 0, 1); a translation "
+            "belongs in the last column"
+        )
+        raise InputError(message, name="pose", got=zone)
+    return pose
 
 
 @dataclass(frozen=True)
@@ -50,7 +81,8 @@ class KeepOut:
     Raises
     ------
     InputError
-        If no link is given, or the pose is not a finite (4, 4) array whose rotation is orthogonal.
+        If no link is given, or the pose is not a finite (4, 4) array with a rotation and the last row
+        (0, 0, 0, 1).
     """
 
     name: str
@@ -62,20 +94,7 @@ class KeepOut:
     def __post_init__(self) -> None:
         """Check the arguments, and store the links as a tuple and the pose as an array."""
         object.__setattr__(self, "links", _patterns(self.links, "links"))
-        pose = np.eye(4) if self.pose is None else np.array(self.pose, dtype=np.float64)
-        if pose.shape != (4, 4):
-            message = f"the pose of the zone {self.name!r} has shape {pose.shape}; expected (4, 4)"
-            raise InputError(message, name="pose", got=pose.shape)
-        if not np.isfinite(pose).all():
-            message = f"the pose of the zone {self.name!r} contains infinity or NaN; give finite numbers"
-            raise InputError(message, name="pose", got=self.name)
-        if not np.allclose(pose[:3, :3] @ pose[:3, :3].T, np.eye(3), atol=1e-6):
-            message = (
-                f"the upper left 3 x 3 block of the pose of the zone {self.name!r} is not a rotation; give "
-                "an orthogonal matrix"
-            )
-            raise InputError(message, name="pose", got=self.name)
-        object.__setattr__(self, "pose", pose)
+        object.__setattr__(self, "pose", np.eye(4) if self.pose is None else _pose(self.pose, self.name))
 
 
 @dataclass(frozen=True)

@@ -76,7 +76,7 @@ def campaign(
 
             print_json(_overview(table))
         elif not quiet:
-            _print_overview(_overview(table), campaign, out)
+            _print_overview(_overview(table), campaign, cases, out)
 
 
 def _overview(table: pa.Table) -> dict[str, Any]:
@@ -96,7 +96,7 @@ def _overview(table: pa.Table) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _print_overview(overview: dict[str, Any], campaign: str, out: Path | None) -> None:
+def _print_overview(overview: dict[str, Any], campaign: str, cases: int | None, out: Path | None) -> None:
     from onorbit_rs.common.printable import shell_word
 
     status = ", ".join(f"{number} {name}" for name, number in overview["status"].items())
@@ -108,6 +108,7 @@ def _print_overview(overview: dict[str, Any], campaign: str, out: Path | None) -
     if bad := overview["without_success"]:
         more = f" and {len(bad) - 10} more" if len(bad) > 10 else ""
         print_line(f"without success: {', '.join(map(str, bad[:10]))}{more}")
-        print_line(f"next: onorbit campaign {shell_word(campaign)} --case {bad[0]} --out DIR")
+        number = "" if cases is None else f" --cases {cases}"  # the draws of a case may depend on it
+        print_line(f"next: onorbit campaign {shell_word(campaign)}{number} --case {bad[0]} --out DIR")
     if out is not None:
         print_line(f"results: {out}")

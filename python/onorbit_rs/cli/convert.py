@@ -35,15 +35,17 @@ def convert(
 
     A note on standard error describes the conversion of each line. Without --out, the scenario is printed.
     """
+    from onorbit_rs.robots.wording import COMMAND_LINE, worded
     from onorbit_rs.scenario.load import check as check_scenario
     from onorbit_rs.tools.interop.onorbitros import convert as convert_files
     from onorbit_rs.tools.interop.write_scenario import scenario_text
 
     check_output_file(out, force=force)
     beside = out.parent if out else None
-    conversion = convert_files(
-        files, controller=controller, external=external, keep_going=keep_going, beside=beside
-    )
+    with worded(COMMAND_LINE):
+        conversion = convert_files(
+            files, controller=controller, external=external, keep_going=keep_going, beside=beside
+        )
     check_scenario(conversion.scenario, None, {})
     for note in conversion.notes:
         print_error(printable(note))

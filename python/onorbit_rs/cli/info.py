@@ -54,10 +54,11 @@ def info(
     from onorbit_rs.robots.describe import describe
     from onorbit_rs.robots.wording import COMMAND_LINE, worded
 
-    given = reading_options(robot, packages, arguments, xacro)
     check_figure_file("--picture", picture, force=force)
     scenario = _scenario(robot)
+    given = reading_options(robot, packages, arguments, xacro) if scenario is None else {}
     if scenario is not None:
+        _check_no_reading_options(robot, packages, arguments, xacro)
         from onorbit_rs.scenario import WorldScenario
 
         if isinstance(scenario, WorldScenario):
@@ -76,6 +77,18 @@ def info(
         words = as_arguments(robot, packages, arguments, xacro)
         command = f"new {words} --out FILE" if scenario is None else f"run {words} --out DIR"
         print_line(f"next: onorbit {command}")
+
+
+def _check_no_reading_options(
+    name: str, packages: list[Path] | None, arguments: list[str] | None, xacro: bool
+) -> None:
+    """Raise InputError if options for the file of a robot are given with a scenario."""
+    if packages or arguments or xacro:
+        raise InputError(
+            f"--package-path, --arg and --xacro apply only to robot files, but {name} is a scenario; omit "
+            "them, and write package_paths, xacro_arguments and xacro below 'robot' in the scenario",
+            name="robot", got=name,
+        )  # fmt: skip
 
 
 def _scenario(name: str) -> Scenario | WorldScenario | None:

@@ -114,7 +114,8 @@ def _springs(model: Model) -> Table:
 
 def _mimic(joint: str, leader: str, ratio: float, offset: float) -> str:
     """Return the equation of a mimic joint, such as ``mimic joint: right = -1 left + 0.2``."""
-    return f"mimic joint: {joint} = {ratio:g} {leader}" + (f" + {offset:g}" if offset else "")
+    sign = "-" if offset < 0.0 else "+"
+    return f"mimic joint: {joint} = {ratio:g} {leader}" + (f" {sign} {abs(offset):g}" if offset else "")
 
 
 def _table(*columns: str) -> Table:

@@ -92,9 +92,12 @@ def _of_the_controls(subject: Subject) -> Iterator[Drawing]:
         if control in trace.tracking and joints and np.any(trace.tracking[control]):
             is_alone = not subject.tools and len(subject.joint_controls or {}) == 1
             whose = "." if is_alone else f" of the controller {control}."
-            about = f"Desired minus obtained positions of the joints{whose}"
+            are_rates = control in subject.rate_controls
+            what = "rates" if are_rates else "positions"
+            about = f"Desired minus obtained {what} of the joints{whose}"
             name = "joint_errors" if is_alone else f"joint_errors_{file_part(control)}"
-            yield Drawing(name, about, partial(control_errors, trace, control, joints, model))
+            drawing = partial(control_errors, trace, control, joints, model, are_rates=are_rates)
+            yield Drawing(name, about, drawing)
     for control, grip in (subject.grips or {}).items():
         if control in trace.tracking and np.any(trace.tracking[control]):
             about = (

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from onorbit_rs.figures.grip import Grip
-from onorbit_rs.scenario.control import GripForceController, JointLaw
+from onorbit_rs.scenario.control import GripForceController, JointLaw, rate_controls
 from onorbit_rs.scenario.control.fingers import finger_contacts
 from onorbit_rs.scenario.control.selection import joint_group, tool_of
 from onorbit_rs.scenario.load import load
@@ -45,6 +45,8 @@ class Subject:
         Controlled frames.
     joint_controls : dict
         Names of the joints of each control in joint space, by the name of the control.
+    rate_controls : tuple of str
+        Controls in joint space whose errors are those of joint rates.
     grips : dict
         Controls that close a gripper, by their names.
     mu : float or None
@@ -69,6 +71,7 @@ class Subject:
     is_the_papers: bool = False
     is_carried: bool = False
     targets: tuple[Target, ...] = ()
+    rate_controls: tuple[str, ...] = ()
 
 
 def subject_of(
@@ -92,6 +95,7 @@ def subject_of(
         is_the_papers=_is_the_papers(scenario),
         is_carried=scenario.gravity_mode == "carried" or (orbit is not None and orbit.mu is None),
         targets=targets(scenario),
+        rate_controls=rate_controls(scenario.controllers),
     )  # fmt: skip
 
 

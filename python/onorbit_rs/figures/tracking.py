@@ -48,7 +48,9 @@ def tracking_errors(trace: Trace) -> Figure:
     return figure
 
 
-def control_errors(trace: Trace, name: str, joints: list[str], model: Model | None = None) -> Figure:
+def control_errors(
+    trace: Trace, name: str, joints: list[str], model: Model | None = None, *, are_rates: bool = False
+) -> Figure:
     """Draw the errors of one of several controllers.
 
     Parameters
@@ -62,6 +64,9 @@ def control_errors(trace: Trace, name: str, joints: list[str], model: Model | No
         :func:`tracking_errors`.
     model : Model, optional
         Robot, which determines the kinds of the joints: errors of prismatic joints, m, have a separate panel.
+    are_rates : bool
+        Whether the errors are those of joint rates, rad/s and m/s, as for a PID with the interface
+        ``velocity``.
     """
     time, label = clock(trace)
     errors = np.asarray(trace.tracking[name])
@@ -71,7 +76,10 @@ def control_errors(trace: Trace, name: str, joints: list[str], model: Model | No
         _plot_errors(panels, time, np.split(errors, 2, axis=1))
         tidy(panels[1], label, panels[1].get_ylabel())
         return figure
-    groups = [(rows, "joint error", units.position) for rows, units in _by_kind(joints, model)]
+    groups = [
+        (rows, "joint rate error", units.rate) if are_rates else (rows, "joint error", units.position)
+        for rows, units in _by_kind(joints, model)
+    ]
     return _many(time, label, errors, joints, groups)
 
 

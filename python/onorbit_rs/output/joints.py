@@ -109,16 +109,20 @@ def loads_exceeded(trace: Trace, model: Model) -> Summary:
     }
 
 
-def joint_errors(key: str, errors: Floats, built: Built, wanted: list[str] | None = None) -> Summary:
+def joint_errors(
+    key: str, errors: Floats, built: Built, wanted: list[str] | None = None, *, are_rates: bool = False
+) -> Summary:
     """Return the largest errors of revolute and of prismatic joints, if the robot has any.
 
-    The keys are ``KEY_joint_error_max_rad`` and ``…_m``. ``errors``, (T, joints), rad or m, are those of all
+    The keys are ``KEY_joint_error_max_rad`` and ``…_m``, or ``KEY_joint_rate_error_max_rad_s`` and ``…_m_s``
+    if the errors are those of rates. ``errors``, (T, joints), rad or m, or rad/s or m/s, are those of all
     joints, or of those named ``wanted``.
     """
     prismatic = _are_prismatic(built, wanted)
-    units = {"rad": ~prismatic, "m": prismatic}
+    what, per = ("joint_rate", "_s") if are_rates else ("joint", "")
+    units = {f"rad{per}": ~prismatic, f"m{per}": prismatic}
     return {
-        f"{key}_joint_error_max_{unit}": largest(
+        f"{key}_{what}_error_max_{unit}": largest(
             lambda rows, columns=columns: np.abs(rows[:, columns]), errors
         ).max()
         for unit, columns in units.items()
@@ -127,23 +131,25 @@ def joint_errors(key: str, errors: Floats, built: Built, wanted: list[str] | Non
 
 
 def single_errors(trace: Trace, built: Built) -> Summary:
-    """Return the largest joint tracking errors of a run with a single controller of joint positions.
+    """Return the largest joint tracking errors of a run with a single controller of joint positions or rates.
 
-    Angles are in rad and lengths in m; the result is empty for other controllers and without joints.
+    The result is empty for other controllers and without joints.
     """
     law = built.scenario.controller
-    has_positions = not isinstance(law, JointPidController) or law.interface == "position"
-    if not isinstance(law, JointLaw) or not has_positions or not built.model.joints:
+    has_efforts = isinstance(law, JointPidController) and law.interface == "effort"
+    if not isinstance(law, JointLaw) or has_efforts or not built.model.joints:
         return {}
     if isinstance(law, ExternalController):
         return joint_errors("tracking", trace.tracking["control"], built)
     parts = []
-    for times, q in blocks(trace.time, trace.q):
-        desired = trace.q[0, JOINTS_Q]  # without a reference, the joints are held at their initial positions
+    for times, q, v in blocks(trace.time, trace.q, trace.v):
+        # without a reference, the joints are held at their initial positions
+        desired, rates = trace.q[0, JOINTS_Q], np.zeros(1)
         if isinstance(built.reference, _core.JointReference):
-            desired, _, _ = built.reference.sample(times)
-        parts.append(np.abs(desired - q[:, JOINTS_Q]).max(axis=0))
-    return joint_errors("tracking", np.array(parts), built)
+            desired, rates, _ = built.reference.sample(times)
+        errors = rates - v[:, JOINTS_V] if law.tracks_rates else desired - q[:, JOINTS_Q]
+        parts.append(np.abs(errors).max(axis=0))
+    return joint_errors("tracking", np.array(parts), built, are_rates=law.tracks_rates)
 
 
 def _are_prismatic(built: Built, wanted: list[str] | None) -> NDArray[np.bool_]:

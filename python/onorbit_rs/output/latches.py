@@ -76,7 +76,7 @@ def _parting(trace: WorldTrace, built: BuiltWorld, names: list[str], end: float)
             touching.add(record.name)
         elif record.kind == "lift_off":
             touching.discard(record.name)
-            parted = None if touching else record.time
+            parted = parted if touching else record.time
     speed = spin = None
     if parted is not None:
         row = min(int(np.searchsorted(trace.time, parted, side="right")), len(trace.time) - 1)

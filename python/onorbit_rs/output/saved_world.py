@@ -65,8 +65,12 @@ class SavedWorldTrace:
     def __getitem__(self, name: str) -> Any:
         """Return the trace of a system; raise WorldError for an unknown name."""
         if name not in self.systems:
-            known = ", ".join(self.names)
-            raise WorldError(f"there is no system {name!r}; the systems are: {known}", name=name)
+            known = (
+                f"the only system is {self.names[0]!r}"
+                if len(self.names) == 1
+                else f"the systems are: {', '.join(self.names)}"
+            )
+            raise WorldError(f"there is no system {name!r}; {known}", name=name)
         return self.systems[name]
 
     def __len__(self) -> int:

@@ -135,7 +135,7 @@ def _controls(trace: Trace, built: Built) -> Summary:
             continue
         key = f"tracking_{control.name}"
         if isinstance(control, JointLaw):
-            summary |= joint_errors(key, errors, built, control.joints)
+            summary |= joint_errors(key, errors, built, control.joints, are_rates=control.tracks_rates)
         elif isinstance(control, GripForceController):
             summary[f"{key}_force_error_final_n"] = errors[-1, 0]
         else:

@@ -6,7 +6,8 @@ import re
 from typing import NamedTuple
 
 _ERROR = re.compile(
-    r"tracking_(?:(?P<owner>.+)_)?(?P<what>position|attitude|joint|force)_error_(?P<which>max|final)_(?P<unit>rad|m|n)"
+    r"tracking_(?:(?P<owner>.+)_)?(?P<what>position|attitude|joint|joint_rate|force)_error_(?P<which>max|final)"
+    r"_(?P<unit>rad|m|n|rad_s|m_s)"
 )
 _GOAL = re.compile(r"control_(.+)_result")
 _WHICH = {"max": "largest", "final": "at the end"}
@@ -37,9 +38,11 @@ def tracking(key: str) -> Tracking | None:
     if found is None:
         return None
     owner, what, which, unit = found.group("owner", "what", "which", "unit")
-    error = "prismatic joint error" if (what, unit) == ("joint", "m") else f"{what} error"
-    prefix = f"{owner}: " if owner else "tool " if what != "joint" else ""
-    return Tracking(owner or "", f"{prefix}{error}, {_WHICH[which]}", unit.replace("n", "N"), which == "max")
+    is_of_joints = what.startswith("joint")
+    kind = "prismatic " if is_of_joints and unit in ("m", "m_s") else ""
+    prefix = f"{owner}: " if owner else "" if is_of_joints else "tool "
+    label = f"{prefix}{kind}{what.replace('_', ' ')} error, {_WHICH[which]}"
+    return Tracking(owner or "", label, unit.replace("n", "N").replace("_", "/"), which == "max")
 
 
 def goal_of(key: str) -> str | None:

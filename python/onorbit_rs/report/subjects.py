@@ -91,12 +91,14 @@ def _robot(scenario: Scenario, summary: dict[str, Any], remarks: list[str], syst
 def _around(saved: SavedRun, scenario: Scenario, remarks: list[str]) -> tuple[Orbit | None, Earth | None]:
     """Return the orbit and the Earth of a run; each is None if the scenario has none.
 
-    One that cannot be read is None, too, and a remark is added.
+    One that cannot be read is None, too, and a remark is added. Without its orbit, the Earth is None, because
+    its axes are those of the orbit.
     """
     orbit = earth = None
-    with _remarked(remarks, "figures of the orbit are omitted, because the orbit or Earth could not be read"):
+    with _remarked(remarks, "figures of the orbit are omitted, because the orbit could not be read"):
         orbit = None if scenario.orbit is None else scenario.orbit.build(saved.folder)
-        earth = build_earth(scenario.earth, scenario.epoch, orbit, saved.folder)
+        with _remarked(remarks, "the ground track is omitted, because the Earth could not be read"):
+            earth = build_earth(scenario.earth, scenario.epoch, orbit, saved.folder)
     return orbit, earth
 
 

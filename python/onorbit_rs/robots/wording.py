@@ -1,4 +1,4 @@
-"""Names of the options for robot files in messages: those of Python, the command line or the scenario."""
+"""Names of options in messages: those of Python, the command line or, for robot files, the scenario."""
 
 from __future__ import annotations
 
@@ -29,6 +29,11 @@ _current: ContextVar[Wording] = ContextVar("wording", default=PYTHON)
 def wording() -> Wording:
     """Return the wording for the current caller; the default is the wording for Python."""
     return _current.get()
+
+
+def option(command_line: str, python: str) -> str:
+    """Return the name of an option for the current caller: on the command line, or as a Python argument."""
+    return command_line if wording() is COMMAND_LINE else python
 
 
 @contextmanager

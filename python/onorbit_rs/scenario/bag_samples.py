@@ -27,6 +27,8 @@ SUFFIXES = (".mcap", ".db3", ".bag")
 class Sample(NamedTuple):
     """Positions, rad or m, and rates, rad/s or m/s, of joints at one time."""
 
+    origin: str
+    """Message or point in the bag, such as ``message 3`` or ``point 3``."""
     time: int
     """Time since the first message, or since the start of a trajectory, ns."""
     names: tuple[str, ...]
@@ -128,16 +130,20 @@ def _samples_of_states(contents: list[tuple[int, Any]]) -> list[Sample]:
     if not any(stamps):  # the headers have no times; the times of recording are used
         stamps = [time for time, _ in contents]
     return [
-        Sample(stamp - stamps[0], tuple(content.name), content.position, content.velocity)
-        for stamp, (_, content) in zip(stamps, contents, strict=True)
+        Sample(
+            f"message {number}", stamp - stamps[0], tuple(content.name), content.position, content.velocity
+        )
+        for number, (stamp, (_, content)) in enumerate(zip(stamps, contents, strict=True), 1)
     ]
 
 
 def _samples_of_trajectory(content: Any) -> list[Sample]:
     names = tuple(content.joint_names)
     return [
-        Sample(_nanoseconds(point.time_from_start), names, point.positions, point.velocities)
-        for point in content.points
+        Sample(
+            f"point {number}", _nanoseconds(point.time_from_start), names, point.positions, point.velocities
+        )
+        for number, point in enumerate(content.points, 1)
     ]
 
 

@@ -138,8 +138,13 @@ def _of_tools(rows: TraceRows, setting: Setting) -> Iterator[Series]:
                 yield Series("Tool", f"{path}/{what}", f"{name}: {what} error", column.unit, AXES, part)
         else:
             names = tuple(f"joint {index + 1}" for index in range(errors.shape[1]))
-            unit = joint_units(joint.kind for joint in setting.model.joints).position
-            yield Series("Joints", path, f"{name}: joint errors", unit, names, errors)
+            units = joint_units(joint.kind for joint in setting.model.joints)
+            what, unit = (
+                ("joint rate errors", units.rate)
+                if name in setting.rate_controls
+                else ("joint errors", units.position)
+            )
+            yield Series("Joints", path, f"{name}: {what}", unit, names, errors)
 
 
 def _of_joints(rows: TraceRows, model: Model) -> Iterator[Series]:

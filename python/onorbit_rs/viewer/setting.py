@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from onorbit_rs.common.coordinates import BASE_Q
-from onorbit_rs.scenario.control import grip_controls
+from onorbit_rs.scenario.control import grip_controls, rate_controls
 from onorbit_rs.scenario.targets import PathFrame, Target, path_frame, targets
 from onorbit_rs.viewer.font import shown
 from onorbit_rs.visuals.geometry import Shape, extent
@@ -30,7 +30,8 @@ class Setting:
 
     ``tool`` is the frame whose pose the trace contains; its path is drawn in ``path_frame``. ``system`` is
     the name of the robot in a world, ``grasps`` are its frames that capture or are captured, and ``grips``
-    are the controls that close a gripper to a force.
+    are the controls that close a gripper to a force. The errors of ``rate_controls`` are those of joint
+    rates.
     """
 
     model: Model
@@ -43,6 +44,7 @@ class Setting:
     system: str = ""
     grasps: tuple[str, ...] = ()
     grips: tuple[str, ...] = ()
+    rate_controls: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, built: Built, system: str = "", grasps: tuple[str, ...] = ()) -> Setting:
@@ -59,6 +61,7 @@ class Setting:
             system,
             grasps,
             grip_controls(scenario.controllers),
+            rate_controls(scenario.controllers),
         )
 
     def entity(self, part: str) -> str:

@@ -33,6 +33,7 @@ __all__ = [
     "JointPidController",
     "PythonController",
     "grip_controls",
+    "rate_controls",
 ]
 
 AnyController = (
@@ -61,3 +62,9 @@ AnyControl = Annotated[_Controls, Field(discriminator="kind"), of_kind(_Controls
 def grip_controls(controls: Sequence[AnyControl] | None) -> tuple[str, ...]:
     """Return the names of the controls that close a gripper to a force."""
     return tuple(control.name for control in controls or () if isinstance(control, GripForceController))
+
+
+def rate_controls(controls: Sequence[AnyControl] | None) -> tuple[str, ...]:
+    """Return the names of the controls whose tracking errors are errors of joint rates."""
+    joint_laws = (control for control in controls or () if isinstance(control, JointLaw))
+    return tuple(control.name for control in joint_laws if control.tracks_rates)

@@ -48,6 +48,11 @@ class JointPidController(JointLaw):
             )
         return self
 
+    @property
+    def tracks_rates(self) -> bool:
+        """True for ``velocity``."""
+        return self.interface == "velocity"
+
     def build_law(self, model: _core.Model, tool: str | None, folder: Path, *, runs_code: bool = True) -> Any:
         """Return the engine's control law object."""
         return _core.JointPid(
@@ -60,9 +65,8 @@ class JointPidController(JointLaw):
         if self.interface == "effort":
             return
         joints, of_joints = mobility.joint_count(self), mobility.of_joints(self)
-        has_rates = self.interface == "velocity"
-        yield "p", 1 if has_rates else 2, of_joints @ square(self.p, joints)
-        if not has_rates:
+        yield "p", 1 if self.tracks_rates else 2, of_joints @ square(self.p, joints)
+        if not self.tracks_rates:
             yield "d", 1, of_joints @ square(self.d, joints)
 
 

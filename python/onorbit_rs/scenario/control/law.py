@@ -64,6 +64,11 @@ class TaskLaw(Law):
 class JointLaw(Law):
     """Control law that makes joints track a reference in joint space."""
 
+    @property
+    def tracks_rates(self) -> bool:
+        """True if the tracking errors are those of the joint rates, rad/s and m/s, not of the positions."""
+        return False
+
 
 def arguments(**values: Any) -> dict[str, Any]:
     """Return keyword arguments for the engine: lists are converted to arrays, and None is omitted."""

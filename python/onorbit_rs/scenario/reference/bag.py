@@ -92,29 +92,29 @@ class _BadRecordingError(ValueError):
 def _with(samples: Sequence[Sample], names: list[str]) -> list[Sample]:
     """Return the samples that contain all named joints; raise an error if a sample contains only some."""
     found = []
-    for number, sample in enumerate(samples, 1):
+    for sample in samples:
         missing = [name for name in names if name not in sample.names]
         if not missing:
-            _check_lengths(number, sample)
+            _check_lengths(sample)
             found.append(sample)
         elif len(missing) < len(names):
             raise _BadRecordingError(
-                f"message {number} lacks {', '.join(missing)}; each message must contain all followed joints "
+                f"{sample.origin} lacks {', '.join(missing)}; each message must contain all followed joints "
                 "or none; list in 'joints' only joints that are always recorded together"
             )
     return found
 
 
-def _check_lengths(number: int, sample: Sample) -> None:
-    """Raise an error if the numbers of names and values in a message differ, or a name occurs twice."""
+def _check_lengths(sample: Sample) -> None:
+    """Raise an error if the numbers of names and values in a sample differ, or a name occurs twice."""
     joints = len(sample.names)
     if doubled := [name for name, times in Counter(sample.names).items() if times > 1]:
         raise _BadRecordingError(
-            f"message {number} names {', '.join(doubled)} more than once; name each joint once"
+            f"{sample.origin} names {', '.join(doubled)} more than once; name each joint once"
         )
     if len(sample.positions) != joints or len(sample.rates) not in (0, joints):
         raise _BadRecordingError(
-            f"the numbers of names, positions and velocities in message {number} are {joints}, "
+            f"the numbers of names, positions and velocities in {sample.origin} are {joints}, "
             f"{len(sample.positions)} and {len(sample.rates)}; give one position per name, and one velocity "
             "per name or none"
         )
@@ -126,20 +126,20 @@ def _distinct(samples: list[Sample]) -> list[Sample]:
     Raises a _BadRecordingError if times decrease or fewer than two samples remain.
     """
     found: list[Sample] = []
-    for number, sample in enumerate(samples, 1):
+    for sample in samples:
         if found and sample.time <= found[-1].time:
             is_same = sample.time == found[-1].time and np.array_equal(sample.positions, found[-1].positions)
             if not is_same:
                 raise _BadRecordingError(
-                    f"times must increase, but message {number} is at {_seconds(sample.time)} s, after "
-                    f"{_seconds(found[-1].time)} s; sort the messages by time, or record the bag again"
+                    f"times must increase, but {sample.origin} is at {_seconds(sample.time)} s, after "
+                    f"{_seconds(found[-1].time)} s; sort the recording by time, or record it again"
                 )
             found.pop()
         found.append(sample)
     if len(found) < 2:
         raise _BadRecordingError(
-            "a motion requires at least two messages that contain the followed joints and have different "
-            f"times; found: {len(found)}"
+            "a motion requires at least two messages, or points of a trajectory, that contain the followed "
+            f"joints and have different times; found: {len(found)}"
         )
     return found
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from onorbit_rs.common.suggestions import did_you_mean
@@ -29,6 +29,16 @@ def no_method(part: UserClass, source: str) -> OnOrbitError:
     """Return the error for a class without the method that it must define."""
     return part.error(
         f"{part.class_} of {source} has no method {part.method}, which must return {part.result}; add it",
+        name="class",
+        got=part.class_,
+    )
+
+
+def is_abstract(part: UserClass, source: str, missing: Sequence[str]) -> OnOrbitError:
+    """Return the error for a class that lacks abstract methods of its bases, named ``missing``."""
+    return part.error(
+        f"{part.class_} of {source} is abstract: it does not define {', '.join(missing)}; define what is "
+        "missing, or give another class",
         name="class",
         got=part.class_,
     )

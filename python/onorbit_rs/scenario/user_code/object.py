@@ -11,7 +11,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from onorbit_rs.common.user_code import announce
-from onorbit_rs.scenario.user_code.errors import no_class, no_method, no_module, no_python
+from onorbit_rs.scenario.user_code.errors import is_abstract, no_class, no_method, no_module, no_python
 from onorbit_rs.scenario.user_code.source import source_of
 
 if TYPE_CHECKING:
@@ -46,8 +46,11 @@ def create_object(part: UserClass, folder: Path) -> Any:
             if inspect.isclass(value) and value.__module__ == module.__name__
         ]
         raise no_class(part, source, classes)
-    if not callable(getattr(user_class, part.method_name, None)) or inspect.isabstract(user_class):
+    missing = sorted(getattr(user_class, "__abstractmethods__", ()))
+    if not callable(getattr(user_class, part.method_name, None)) or part.method_name in missing:
         raise no_method(part, source)
+    if missing:
+        raise is_abstract(part, source, missing)
     try:
         return user_class(**part.arguments)
     except Exception as error:

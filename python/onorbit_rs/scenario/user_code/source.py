@@ -6,6 +6,7 @@ import ast
 import importlib.machinery
 import importlib.util
 import inspect
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -92,11 +93,15 @@ def inspect_source(part: UserClass, folder: Path) -> Placeholder:
             name="file",
             got=source,
         ) from error
-    statements = list(_statements(tree.body))
-    classes = {node.name: node for node in statements if isinstance(node, ast.ClassDef)}
+    statements = list(_statements(tree))
+    bound = Counter(name for statement in statements for name in _bound_names(statement))
+    if not bound[part.class_] and not bound["*"]:
+        raise no_class(part, source, [node.name for node in statements if isinstance(node, ast.ClassDef)])
+    # which definition of several applies, such as in "try" and "except", is not known
+    classes = {
+        node.name: node for node in statements if isinstance(node, ast.ClassDef) and bound[node.name] == 1
+    }
     definition = classes.get(part.class_)
-    if definition is None and not _may_be_bound(part.class_, statements):
-        raise no_class(part, source, classes)
     if definition is not None:
         _check_class(definition, classes, part, source)
     return Placeholder()
@@ -118,27 +123,27 @@ def _module_file(part: UserClass) -> str | None:
     return spec.origin if spec.has_location else None
 
 
-def _statements(body: list[ast.stmt]) -> Iterator[ast.stmt]:
-    """Yield the statements of a module and those in ``if``, ``with`` and ``try``, but not in ``except``."""
-    for statement in body:
-        yield statement
-        for inner in ("body", "orelse", "finalbody"):
-            if isinstance(statement, (ast.If, ast.Try, ast.With)):
-                yield from _statements(getattr(statement, inner, []))
+def _statements(module: ast.Module) -> Iterator[ast.stmt]:
+    """Yield the statements of a module at any depth, except those in functions and classes."""
+    waiting: list[ast.AST] = [module]
+    while waiting:
+        for child in ast.iter_child_nodes(waiting.pop()):
+            if isinstance(child, ast.stmt):
+                yield child
+            if not isinstance(child, (ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef, ast.expr)):
+                waiting.append(child)
 
 
-def _may_be_bound(name: str, statements: list[ast.stmt]) -> bool:
-    """Return True if an import or an assignment may define ``name`` in the module."""
-    for statement in statements:
-        if isinstance(statement, (ast.Import, ast.ImportFrom)):
-            names = [alias.asname or alias.name.split(".")[0] for alias in statement.names]
-        elif isinstance(statement, (ast.Assign, ast.AnnAssign)):
-            names = [node.id for node in ast.walk(statement) if isinstance(node, ast.Name)]
-        else:
-            continue
-        if name in names or "*" in names:
-            return True
-    return False
+def _bound_names(statement: ast.stmt) -> list[str]:
+    """Return the names that a class, an import or an assignment defines; ``*`` stands for any names."""
+    if isinstance(statement, ast.ClassDef):
+        return [statement.name]
+    if isinstance(statement, (ast.Import, ast.ImportFrom)):
+        return [alias.asname or alias.name.split(".")[0] for alias in statement.names]
+    if not isinstance(statement, (ast.Assign, ast.AnnAssign)):
+        return []
+    names = [node for node in ast.walk(statement) if isinstance(node, ast.Name)]
+    return [node.id for node in names if isinstance(node.ctx, ast.Store)]
 
 
 def _check_class(

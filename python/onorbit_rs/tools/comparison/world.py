@@ -52,8 +52,8 @@ class WorldComparison(Verdict):
     systems: Mapping[str, Comparison]
     """Comparison of each system, by name."""
     events: tuple[EventDifference, ...]
-    """Differences of the events: five quantities of each event, six if it has a peak force, and only the time
-    of an event that happened in one run only.
+    """Differences of the events: five quantities of each event, six if it has a peak force in both runs, and
+    only the time of an event that happened in one run only.
     """
     notes: tuple[str, ...]
     """Notes on differing settings and on events that were not compared."""
@@ -110,6 +110,9 @@ def compared_worlds(
             notes.append(f"event {name!r} is not compared: it happened after the end of one of the runs")
         else:
             events += list(_differences(name, pair, tolerance))
+            have_peaks = {record.peak_force is not None for record in pair if record is not None}
+            if len(have_peaks) == 2:
+                notes.append(f"the peak force of event {name!r} is not compared: only one of the runs has it")
     return WorldComparison(a.name, b.name, tolerance, systems, tuple(events), tuple(notes))
 
 
@@ -149,8 +152,11 @@ def _differences(name: str, pair: Pair, tolerance: float) -> Iterator[EventDiffe
         yield EventDifference(name, "time", "s", a, b, math.inf, tolerance * max(1.0, at), at)
         return
     at = min(first.time, second.time)
-    values = [_quantities(record) for record in (first, second)]
-    for (quantity, unit, one), (_, _, other) in zip(*values, strict=True):
+    others = {quantity: other for quantity, _, other in _quantities(second)}
+    for quantity, unit, one in _quantities(first):
+        if quantity not in others:
+            continue
+        other = others[quantity]
         value_a, value_b = (float(v[0] if len(v) == 1 else np.linalg.norm(v)) for v in (one, other))
         difference = float(np.linalg.norm(one - other))
         allowed = tolerance * max(1.0, abs(value_a), abs(value_b))

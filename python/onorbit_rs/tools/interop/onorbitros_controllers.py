@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from onorbit_rs.common.suggestions import did_you_mean
+from onorbit_rs.robots.wording import option
 from onorbit_rs.tools.interop.onorbitros_controller import is_of_task, joints_of, read_task_law
 from onorbit_rs.tools.interop.onorbitros_external import forwards_efforts, read_driven, read_efforts
 from onorbit_rs.tools.interop.onorbitros_pid import is_pid, read_pid
@@ -35,9 +36,7 @@ def read_controllers(source: Source, wanted: str | None, external: bool) -> None
         )  # fmt: skip
     if wanted is not None and wanted not in known:
         raise source.fail(known[0], f"no controller is named {wanted!r}{did_you_mean(wanted, known)}")
-    chosen, why = (
-        ([wanted], "another controller was chosen with --controller") if wanted else _together(parts, known)
-    )
+    chosen, why = ([wanted], "another controller was chosen") if wanted else _together(parts, known)
     for name in source.data:
         if name in chosen:
             source.note(name, "understood", "a controller" if len(chosen) > 1 else "the controller")
@@ -56,9 +55,8 @@ def _together(parts: dict[str, Any], names: list[str]) -> tuple[list[str], str]:
         joints = joints_of(parts[name])
         if len(names) > 1 and (not joints or driven & set(joints)):
             what = "drives joints of another controller" if joints else "lists no joints"
-            return names[
-                :1
-            ], f"{name} {what}, so they cannot run at the same time; choose one with --controller"
+            choice = option("--controller", "controller=")
+            return names[:1], f"{name} {what}, so they cannot run at the same time; choose one with {choice}"
         driven |= set(joints)
     return names, ""
 

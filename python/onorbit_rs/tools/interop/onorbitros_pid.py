@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from onorbit_rs.robots.wording import option
 from onorbit_rs.scenario.errors import shortened
 
 if TYPE_CHECKING:
@@ -50,7 +51,8 @@ def read_pid(source: Source) -> None:
     source.note(
         key, "understood",
         "the gains are unchanged; OnOrbitROS receives commands over a topic, but here the joints are held: "
-        "add a reference, or convert with --external to send commands from ROS 2",
+        f"add a reference, or convert with {option('--external', 'external=True')} to send commands from "
+        "ROS 2",
     )  # fmt: skip
     source.comments[("p",)] = f"{source.file.name}: {key}"
     for extra in KEYS[5:]:

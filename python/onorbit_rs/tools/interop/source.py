@@ -9,6 +9,7 @@ from typing import Any, Literal
 
 from onorbit_rs.common.suggestions import nearest
 from onorbit_rs.exceptions import OnOrbitError, QuantityError
+from onorbit_rs.robots.wording import option
 from onorbit_rs.scenario.locations import dotted, scenario_error
 from onorbit_rs.scenario.yaml_lines import Lines, Location
 from onorbit_rs.tools.interop.expressions import evaluate
@@ -75,16 +76,19 @@ class Source:
             near = nearest(key, known)
             hint = f" (did you mean {near!r}?)" if near else f" (the keys here are {', '.join(known)})"
             if not self.keep_going:
-                fix = "correct or remove the key, or use --keep-going to ignore it"
+                ignore = option("--keep-going", "keep_going=True")
+                fix = f"correct or remove the key, or use {ignore} to ignore it"
                 raise self.fail(key, f"{key!r} is not a key of OnOrbitROS{hint}; {fix}")
             self.note(key, "no meaning", f"not a key of OnOrbitROS{hint}")
 
     def number(self, key: str, default: float | None = None) -> float:
         """Return the value of ``key``, which may be arithmetic, or ``default`` if it is not given.
 
-        Raises ScenarioError for any other value.
+        Raises ScenarioError for any other value, or if neither is given.
         """
-        if default is not None and key not in self.data:
+        if key not in self.data:
+            if default is None:
+                raise self.fail(key, "is missing; give a number, or arithmetic such as (60.0*pi)/180.0")
             return default
         try:
             return evaluate(self.data[key])

@@ -14,6 +14,7 @@ import yaml
 
 from onorbit_rs import _core
 from onorbit_rs.exceptions import OnOrbitError, ScenarioError
+from onorbit_rs.robots.wording import option
 from onorbit_rs.scenario import WorldScenario
 from onorbit_rs.scenario.build_world import build_world
 from onorbit_rs.tools.new_scenario.approach import approach, find_handle, outwardness
@@ -135,9 +136,10 @@ def _first_passing(models: tuple[Model, Model], plan: CapturePlan) -> CapturePla
         setting = f"{tried.integrator} with {step} at {100 * tried.speed:g} cm/s"
         reasons.setdefault(reason, []).append(setting)
     listed = "; ".join(f"{reason} ({', '.join(settings)})" for reason, settings in reasons.items())
+    frames = option("--tool and --target-frame", "tool= and handle=")
     raise ScenarioError(
         f"every trial run of {plan.name} failed; check inertias, damping and limits with 'onorbit info', "
-        f"change the files, or give other frames with --tool and --target-frame; reasons: {listed}",
+        f"change the files, or give other frames with {frames}; reasons: {listed}",
         file=None, path=None, line=None,
     )  # fmt: skip
 

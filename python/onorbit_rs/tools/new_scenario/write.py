@@ -10,6 +10,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 from onorbit_rs.exceptions import FrameError, ScenarioError
+from onorbit_rs.robots.wording import option
 from onorbit_rs.tools.new_scenario.arm import FULL_POSE_JOINTS, Arm, find_arm
 from onorbit_rs.tools.new_scenario.motion import configuration, joint_goals, lines, start_positions
 from onorbit_rs.tools.new_scenario.source import Source
@@ -84,7 +85,7 @@ def draft(
         arm = find_arm(model, tool)
         if tool is not None and arm is None:
             raise FrameError(
-                f"no joint moves the frame {tool!r}; give another frame with --tool",
+                f"no joint moves the frame {tool!r}; give another frame with {option('--tool', 'tool=')}",
                 name=tool, kind="frame", known=list(model.frame_names), suggestion=None,
             )  # fmt: skip
         plan = _first_passing(model, arm, Plan(source.name(model), source.entry(None, model)))
@@ -102,7 +103,8 @@ def _first_passing(model: Model, arm: Arm | None, plan: Plan) -> Plan:
         found = trials.gentlest(plans, 0.5 * (ends - perf_counter()))
         if found is not None:
             return found if found.arm else replace(found, failures=trials.failures() or [_NO_ROOM])
-    held, other = ", including one that holds all joints for 1 s", ", or give another frame with --tool"
+    held = ", including one that holds all joints for 1 s"
+    other = f", or give another frame with {option('--tool', 'tool=')}"
     if arm is None:
         held = other = ""
     raise ScenarioError(
