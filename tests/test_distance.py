@@ -178,6 +178,7 @@ def test_a_missing_mesh_and_an_invalid_shape_are_errors() -> None:
             "<mesh filename='package://lost/a.stl'/>",
             "there is no mesh file 'package://lost/a.stl'; correct its name",
         ),
+        ("<mesh scale='1 1 1'/>", "<mesh> of link 'body' has no attribute 'filename'; add the attribute"),
         ("<sphere radius='0'/>", "link 'body': radius of <sphere> is 0 m; it must be positive"),
         ("<box size='1 -1 1'/>", "link 'body': size"),
     ]:

@@ -122,6 +122,8 @@ def test_an_internal_force_is_a_value() -> None:
     assert pickle.loads(pickle.dumps(force)) == force != oo.InternalForce("right")
     with pytest.raises(ShapeError, match=r"force has shape \(2,\); expected \(3,\)"):
         oo.InternalForce("right", force=[1.0, 2.0])
+    with pytest.raises(ShapeError, match=r"moment has shape \(1, 3\); expected \(3,\)"):
+        oo.InternalForce("right", moment=[[1.0, 2.0, 3.0]])
     with pytest.raises(InputError):
         oo.InternalForce("right", moment=[1.0, 2.0, np.nan])
 
@@ -144,6 +146,7 @@ def test_loads_and_forces_that_cannot_be_are_refused() -> None:
     for law, force, problem in [
         (oo.JointPid(p=1.0), [1.0, 0.0, 0.0], "which its controller does not use"),
         (oo.JointComputedTorque(), None, "commands a moment about z"),
+        (oo.JointComputedTorque(), [1e30, 0.0, 0.0], r"^control '\w+': force holds 1e30; .* at most 1e20"),
     ]:
         moment = None if force else [0.0, 0.0, 1.0]
         control = oo.Control(

@@ -297,6 +297,23 @@ def test_loops_that_cannot_be_closed_are_named() -> None:
         model.closed_configuration(start(model))
 
 
+def test_a_mimic_joint_that_cannot_follow_is_named_with_its_unit() -> None:
+    builder = linkage()
+    builder.add_link(
+        "slide", parent="base", joint="slide", kind="prismatic", mimic=("left", 1.0, 0.2), **rod(1.0, 0.4)
+    )
+    at_left = np.eye(4)
+    at_left[:3, 3] = [0.1, 0.2, 0.0]
+    welds = [
+        oo.Loop("weld_left", "weld", "base", "left_crank", pose_a=at_left),
+        oo.Loop("weld_slide", "weld", "base", "slide"),
+    ]
+    model = builder.build().with_loops(welds)
+    message = r"the mimic joint 'slide' still differs by [0-9.e-]+ m from the position that its leader"
+    with pytest.raises(ConvergenceError, match=message):
+        model.closed_configuration(model.neutral())
+
+
 def test_a_start_that_opens_a_loop_is_refused_unless_projected() -> None:
     model = linkage().build().with_loops([closing()])
     with pytest.raises(InputError, match=r"opens the loop 'closing' by 0.32.* m; .*'project: true'"):

@@ -70,7 +70,8 @@ def refused(file: Path) -> str:
         ([("crank: 0", "crank: 0.1")], "3: loops[0]: the initial configuration opens the loop 'left' by 0.0"),
         (
             [("project: false", "pose_a: {position: [1 m, 0, 0]}, project: true")],
-            "2: loops: the loops cannot all be closed near this configuration: 'left' stays open by 0.",
+            "2: loops: no configuration near the given one satisfies all constraints of loops and mimic "
+            "joints: the loop 'left' stays open by 0.",
         ),
         (
             [("crank: 0", "crank: 0, right_crank: 0.2")],

@@ -95,7 +95,10 @@ pub fn choice(count: usize, one: &str) -> String {
 }
 
 fn plural(one: &str) -> String {
-    one.strip_suffix('y').map_or_else(|| format!("{one}s"), |stem| format!("{stem}ies"))
+    match one.strip_suffix('y') {
+        Some(stem) if !stem.ends_with(['a', 'e', 'o', 'u']) => format!("{stem}ies"),
+        _ => format!("{one}s"),
+    }
 }
 
 /// Formats a number with up to `digits` significant digits, without trailing zeros. From [`SMALL`] to
@@ -151,6 +154,7 @@ mod tests {
         assert_eq!(names(&["a", "b"], "contact"), "the contacts are: a, b");
         assert_eq!([0, 1, 3].map(|n| indices(n, "joint")), ["no joints", "only joint 0", "joints 0 to 2"]);
         assert_eq!(indices(2, "body"), "bodies 0 to 1");
+        assert_eq!(["array", "key", "entry"].map(|one| count(2, one)), ["2 arrays", "2 keys", "2 entries"]);
         assert_eq!(choice(0, "joint"), "no joints, so no index is valid");
         assert_eq!(choice(1, "frame"), "only frame 0; give the index 0");
         assert_eq!(choice(3, "frame"), "frames 0 to 2; give one of these indices");

@@ -164,7 +164,7 @@ fn bad_input_is_refused_before_anything_is_written() {
     };
     assert!(matches!(refuse(&q[1..], &v, q.len() - 1), InputError::WrongLength { name: "q", .. }));
     let nan = vec![f64::NAN; v.len()];
-    assert!(matches!(refuse(&q, &nan, q.len()), InputError::NotFinite { name: "v", state: 0, .. }));
+    assert!(matches!(refuse(&q, &nan, q.len()), InputError::NotFinite { name: "v", state: None, .. }));
     q[3] += 1e-3;
     assert!(matches!(refuse(&q, &v, q.len()), InputError::QuaternionNorm { state: 0, .. }));
 }

@@ -171,5 +171,9 @@ fn ellipses_from_elements_agree_with_kepler() {
         kepler_states(each, mu, &mut [0.0; 6], &mut [0.0; 6], None).expect_err("refused").to_string();
     assert!(second.starts_with("semi_major_axis is -7000000 in state 1;"), "{second}");
     assert!(wrong(7e6, 0.1, 0.0).starts_with("mu is 0"));
-    assert!(wrong(7e6, f64::NAN, mu).contains("eccentricity' holds NaN"));
+    assert!(wrong(7e6, f64::NAN, mu).contains("eccentricity' holds NaN; expected"));
+    let each: [&[f64]; 7] = [&[7e6, f64::INFINITY], &[0.1], &[0.0], &[0.0], &[0.0], &[0.0], &[0.0]];
+    let second =
+        kepler_states(each, mu, &mut [0.0; 6], &mut [0.0; 6], None).expect_err("refused").to_string();
+    assert!(second.contains("semi_major_axis' holds inf in state 1;"), "{second}");
 }

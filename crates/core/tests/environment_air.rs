@@ -152,7 +152,11 @@ fn errors_of_tables_name_the_line() {
     assert!(refused("").contains("line 1: the table is empty"));
     assert!(refused("DATE,AP_AVG,F10.7_OBS\n").contains("no column F10.7_OBS_CENTER81"));
     let one = |row: &str| refused(&format!("DATE,AP_AVG,F10.7_OBS,F10.7_OBS_CENTER81\n{row}"));
-    assert!(one("").contains("no rows"));
+    assert!(one("").contains("line 2: the table has no rows"));
+    assert!(refused("\n\nDATE\n").contains("line 3: the header has no column"));
+    assert!(
+        refused("\n\nDATE,AP_AVG,F10.7_OBS,F10.7_OBS_CENTER81").contains("line 4: the table has no rows")
+    );
     assert!(one("2023-02-29,4,150,150").contains("line 2: DATE is '2023-02-29'; expected a date"));
     // the sum of days overflowed
     assert!(one("2024-03-9223372036854775807,4,150,150").contains("expected a date such as 2024-03-01"));

@@ -138,6 +138,12 @@ fn shapes_without_volume_and_poses_that_are_not_finite_are_refused() {
             assert!(error.to_string().contains("positive and finite"), "{error}");
         }
     }
+    let capsule = |half_length| Shape::Capsule { radius: 1.0, half_length }.check();
+    assert_eq!(capsule(0.0), Ok(()));
+    assert_eq!(
+        capsule(-1.0).unwrap_err().to_string(),
+        "the half length of a capsule is -1 m; it must be finite and at least 0"
+    );
     let lost = Pose::at(Vec3::new(f64::NAN, 0.0, 0.0));
     let error = closest(&cube, &at, &cube, &lost).unwrap_err();
     assert_eq!(

@@ -52,6 +52,35 @@ fn links_with_invalid_inertia_are_refused() {
 }
 
 #[test]
+fn an_indefinite_body_is_reported_with_the_indefinite_link_and_its_own_moments() {
+    let massless = |moments: [f64; 3]| Some(Inertial { mass: 0.0, ..shaped(moments).unwrap() });
+    let mut builder = robot();
+    for (name, moments) in [("wheel", [0.1, 0.1, 0.2]), ("bad", [-5.0, 1.0, 1.0])] {
+        let link = Link::new(name, massless(moments));
+        builder.add("base", fixed(name, Isometry3::identity()), link).unwrap();
+    }
+    let expected = ModelError::IndefiniteInertia { link: "bad".into(), moments: [-5.0, 1.0, 1.0] };
+    assert_eq!(builder.build().unwrap_err(), expected);
+}
+
+#[test]
+fn limits_may_be_infinite_but_not_nan() {
+    let add = |x: f64, k: usize| {
+        let mut joint = revolute("j", Vector3::z());
+        match k {
+            0 => joint.limits.position = Some((-1.0, x)),
+            1 => joint.limits.velocity = Some(x),
+            _ => joint.limits.effort = Some(x),
+        }
+        robot().add("base", joint, Link::new("l", ball(1.0))).map(|_| ())
+    };
+    for (k, what) in ["a position limit", "the velocity limit", "the effort limit"].into_iter().enumerate() {
+        assert_eq!(add(f64::INFINITY, k), Ok(()));
+        assert_eq!(add(f64::NAN, k), Err(ModelError::LimitIsNan { joint: "j".into(), what }));
+    }
+}
+
+#[test]
 fn names_are_used_once_and_known() {
     let mut builder = robot();
     builder.add("base", revolute("j", Vector3::z()), Link::new("arm", ball(1.0))).unwrap();

@@ -4,10 +4,13 @@
 mod common;
 
 use common::random_model;
+use common::touch::side;
 use nalgebra::Vector3;
+use onorbit_core::contact::{Contact, ContactError};
 use onorbit_core::control::{Compliance, ComputedTorque, Control, ControlError, Law, check_controls};
 use onorbit_core::environment::surfaces::{Optics, Surface, SurfaceError};
 use onorbit_core::environment::{BodyWrench, EnvironmentError};
+use onorbit_core::geometry::Shape;
 use onorbit_core::gravity::{GravityError, GravityField};
 use onorbit_core::model::Frame;
 use onorbit_core::reference::{Hold, JointHold, ReferenceError, TaskReference, joint_table, task_table};
@@ -61,6 +64,21 @@ fn tables_without_room() {
     let field = GravityField::zonal(2).unwrap();
     let error = field.accelerations(&[7e6, 0.0, 0.0, 7e6], &mut [0.0; 3]).unwrap_err();
     assert!(matches!(error, GravityError::WrongLength { name: "positions", got: 4, .. }), "{error}");
+}
+
+#[test]
+fn contacts_with_an_empty_side() {
+    let piece = || side(0, 0, Shape::Sphere { radius: 1.0 });
+    for sides in [[vec![], vec![piece()]], [vec![piece()], vec![]], [vec![], vec![]]] {
+        let contact = Contact {
+            name: "touch".to_owned(),
+            sides,
+            law: None,
+            impact: None,
+            may_start_overlapping: false,
+        };
+        assert_eq!(contact.check(), Err(ContactError::NoPieces { contact: "touch".to_owned() }));
+    }
 }
 
 #[test]

@@ -360,10 +360,14 @@ fn invalid_references_are_refused() {
     let error = PoseSpline::waypoints(&same, &Timing::Limits(LIMITS), true).unwrap_err();
     assert_eq!(error, ReferenceError::SamePoint { point: 0 });
     assert_eq!(Line::within(start.clone(), &start, &LIMITS), Err(ReferenceError::NoLimit));
-    let tiny = RateLimit { rate: 1e-309, ..RateLimit::NONE };
-    let tiny = TaskLimits { linear: tiny, angular: tiny };
+    let within = |rate: f64, ramp: Option<f64>| {
+        let limit = RateLimit { rate, ..RateLimit::NONE };
+        let limits = TaskLimits { linear: limit, angular: limit };
+        TimeLaw::within(&limits, ramp, |law| Line::new(start.clone(), &poses()[1], law))
+    };
     for ramp in [None, Some(0.2)] {
-        let error = TimeLaw::within(&tiny, ramp, |law| Line::new(start.clone(), &poses()[1], law));
+        assert!(matches!(within(1e20, ramp), Err(ReferenceError::DurationNotPositive { .. })));
+        let error = within(1e-309, ramp);
         let is_infinite = |error: &ReferenceError| match error {
             ReferenceError::NotFinite { name, value } => *name == "duration" && *value == f64::INFINITY,
             _ => false,

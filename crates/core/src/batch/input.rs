@@ -39,11 +39,12 @@ pub enum InputError {
         known = choice(*count, "frame")
     )]
     UnknownFrame { frame: usize, count: usize },
+    /// A number that is not finite. `state` is `None` if the array has one row, for one or for all states.
     #[error(
-        "the array '{name}' holds {value} in state {state}; expected finite numbers",
-        value = short(*value)
+        "the array '{name}' holds {value}{of_state}; expected finite numbers",
+        value = short(*value), of_state = in_state(*state)
     )]
-    NotFinite { name: &'static str, state: usize, value: f64 },
+    NotFinite { name: &'static str, state: Option<usize>, value: f64 },
     #[error(
         "the quaternion {name}[3:7] (x, y, z, w) of state {state} has norm {norm}; it must be 1 within \
          1e-6; normalise it",
@@ -86,7 +87,7 @@ pub enum InputError {
     /// is not positive and finite.
     #[error(
         "{name} is {value}{of_state}; it must be {expected}",
-        value = short(*value), of_state = state.map_or_else(String::new, |state| format!(" in state {state}"))
+        value = short(*value), of_state = in_state(*state)
     )]
     NotAnEllipse { name: &'static str, state: Option<usize>, value: f64, expected: &'static str },
     #[error(
@@ -95,6 +96,11 @@ pub enum InputError {
         each = if *states == 1 { String::new() } else { format!(", or {states}, one per state") }
     )]
     WrongElements { name: &'static str, states: usize, got: usize },
+}
+
+/// Formats the index of a state for a message; returns an empty text for `None`.
+fn in_state(state: Option<usize>) -> String {
+    state.map_or_else(String::new, |state| format!(" in state {state}"))
 }
 
 /// Largest accepted deviation of the norm of a quaternion from 1.
@@ -160,7 +166,7 @@ pub(super) fn check_whole(name: &'static str, data: &[f64], width: usize) -> Res
 }
 
 /// Checks that all numbers are finite. `width` is the number of values per state, from which the error
-/// derives the index of the state.
+/// derives the index of the state if there are several rows.
 pub(super) fn check_finite(name: &'static str, data: &[f64], width: usize) -> Result<(), InputError> {
     // 0 · x is 0 only for a finite x, and a single pass of additions is cheap
     let sum: f64 = data.iter().map(|x| x * 0.0).sum();
@@ -168,7 +174,8 @@ pub(super) fn check_finite(name: &'static str, data: &[f64], width: usize) -> Re
         return Ok(());
     }
     let index = data.iter().position(|x| !x.is_finite()).unwrap_or(0);
-    Err(InputError::NotFinite { name, state: index / width.max(1), value: data[index] })
+    let state = (data.len() > width).then(|| index / width.max(1));
+    Err(InputError::NotFinite { name, state, value: data[index] })
 }
 
 /// Checks that the quaternion of each configuration in the array `name` has unit norm within [`UNIT_NORM`].

@@ -86,9 +86,9 @@ impl Contact {
     /// Checks the laws and the shapes of the contact.
     ///
     /// # Errors
-    /// [`ContactError`] for the first invalid parameter or shape, if all pieces of both sides belong to
-    /// the same link, or if an impact law is combined with compliant forces or with a permitted overlap at
-    /// the start.
+    /// [`ContactError`] for the first invalid parameter or shape, if a side has no pieces, if all pieces of
+    /// both sides belong to the same link, or if an impact law is combined with compliant forces or with a
+    /// permitted overlap at the start.
     pub fn check(&self) -> Result<(), ContactError> {
         if let Some(law) = &self.law {
             law.normal.check()?;
@@ -105,6 +105,9 @@ impl Contact {
             }
         }
         let [a, b] = &self.sides;
+        if a.is_empty() || b.is_empty() {
+            return Err(ContactError::NoPieces { contact: self.name.clone() });
+        }
         let is_same = |a: &ContactSide| b.iter().all(|b| a.frame == b.frame);
         if a.iter().all(is_same) {
             return Err(ContactError::SameLink { contact: self.name.clone() });

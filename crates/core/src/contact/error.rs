@@ -44,6 +44,15 @@ pub enum ContactError {
         /// Name of the last link that matches.
         link: String,
     },
+    /// A side of a contact has no pieces.
+    #[error(
+        "contact '{contact}': one of its sides has no collision shapes; give each side at least one link with a \
+         collision shape"
+    )]
+    NoPieces {
+        /// Name of the contact.
+        contact: String,
+    },
     /// Both sides of a contact are the same link.
     #[error(
         "contact '{contact}': both sides are the same link, which cannot touch itself; give two different links"

@@ -40,8 +40,9 @@ impl InternalForce {
         model: &Model,
         captures: &[String],
     ) -> Result<(), ControlError> {
-        check_size("force", &self.force.unwrap_or_default())?;
-        check_size("moment", &self.moment.unwrap_or_default())?;
+        for (name, part) in [("force", self.force), ("moment", self.moment)] {
+            check_size(name, &part.unwrap_or_default()).map_err(|error| error.of_control(control))?;
+        }
         let (control, name) = (control.to_owned(), self.closure.clone());
         let closures = || model.closures().iter().filter(|closure| !closure.directions().is_empty());
         let Some(closure) = closures().find(|closure| closure.name == name) else {

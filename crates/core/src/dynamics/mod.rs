@@ -34,8 +34,8 @@ pub use jacobian::{frame_acceleration, frame_drift, frame_jacobian};
 pub(crate) use kinematics::base_rotation;
 pub use kinematics::{FramePose, frame_pose, frame_velocity, kinematics, positions};
 pub use loops::{
-    ClosedLoops, ConstrainedFreeFloating, IndependentJoints, close_loops, close_velocity, closure_errors,
-    constrained_forward_dynamics, constrained_free_floating,
+    ClosedLoops, ConstrainedFreeFloating, IndependentJoints, UnsatisfiedConstraints, close_loops,
+    close_velocity, closure_errors, constrained_forward_dynamics, constrained_free_floating,
 };
 pub(crate) use loops::{
     add_leaders, constrained_recursion, length_joints, project_configuration, project_velocity,

@@ -19,8 +19,11 @@ pub struct PosedPair {
 /// Error of a shape or of the computation of a distance.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GeometryError {
-    /// A length of a shape is not positive and finite.
-    #[error("the {name} of {shape} is {got} m; it must be positive and finite", got = short(*got))]
+    /// A length of a shape is infinite or NaN, negative, or zero where it must be positive.
+    #[error(
+        "the {name} of {shape} is {got} m; it must be {expected}",
+        got = short(*got), expected = if *may_be_zero { "finite and at least 0" } else { "positive and finite" }
+    )]
     Length {
         /// Kind of the shape with its article, such as `a box`.
         shape: &'static str,
@@ -28,6 +31,8 @@ pub enum GeometryError {
         name: &'static str,
         /// Given value, m.
         got: f64,
+        /// True if the length may be zero.
+        may_be_zero: bool,
     },
     /// Points have no convex hull with a volume.
     #[error(

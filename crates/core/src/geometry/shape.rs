@@ -90,7 +90,6 @@ impl Shape {
     pub fn check(&self) -> Result<(), GeometryError> {
         let lengths: &[(&'static str, f64)] = match self {
             Self::Sphere { radius } => &[("radius", *radius)],
-            Self::Capsule { radius, half_length } if *half_length == 0.0 => &[("radius", *radius)],
             Self::Capsule { radius, half_length }
             | Self::Cylinder { radius, half_length }
             | Self::Cone { radius, half_length } => &[("radius", *radius), ("half length", *half_length)],
@@ -112,10 +111,13 @@ impl Shape {
                 return if pieces.is_empty() { Err(GeometryError::EmptyCompound) } else { Ok(()) };
             }
         };
-        match lengths.iter().find(|(_, length)| !(*length > 0.0 && length.is_finite())) {
-            Some(&(name, got)) => Err(GeometryError::Length { shape: self.name(), name, got }),
-            None => Ok(()),
+        for &(name, got) in lengths {
+            let may_be_zero = name == "half length" && matches!(self, Self::Capsule { .. });
+            if !got.is_finite() || got < 0.0 || got == 0.0 && !may_be_zero {
+                return Err(GeometryError::Length { shape: self.name(), name, got, may_be_zero });
+            }
         }
+        Ok(())
     }
 
     /// Returns true if all surfaces of the shape are plane.

@@ -282,13 +282,17 @@ fn check_joint(joint: &Joint) -> Result<(), ModelError> {
         ("the effort limit", joint.limits.effort.unwrap_or(0.0), unit_of("N m", "N")),
     ];
     for (what, value, unit) in amounts {
+        let is_limit = what.ends_with("limit");
         if value.is_nan() {
-            return Err(ModelError::NotFinite { what, name: name() });
+            return Err(match is_limit {
+                true => ModelError::LimitIsNan { joint: name(), what },
+                false => ModelError::NotFinite { what, name: name() },
+            });
         }
         if value < 0.0 {
             return Err(ModelError::Negative { joint: name(), what, value, unit });
         }
-        if value > 1e20 && !what.ends_with("limit") {
+        if value > 1e20 && !is_limit {
             let expected = "at most 1e20, in SI units";
             return Err(ModelError::OutOfRange { what, name: name(), value, expected });
         }
@@ -300,7 +304,7 @@ fn check_joint(joint: &Joint) -> Result<(), ModelError> {
     check_spring(joint)?;
     match joint.limits.position {
         Some((lower, upper)) if lower.is_nan() || upper.is_nan() => {
-            Err(ModelError::NotFinite { what: "a position limit", name: name() })
+            Err(ModelError::LimitIsNan { joint: name(), what: "a position limit" })
         }
         Some((lower, upper)) if lower > upper => {
             Err(ModelError::LimitsReversed { joint: name(), lower, upper, unit: unit_of("rad", "m") })

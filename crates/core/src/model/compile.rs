@@ -78,20 +78,20 @@ pub(super) fn compile(description: Description, warnings: Vec<ModelWarning>) -> 
     Ok(model)
 }
 
-/// Checks the links whose inertia is indefinite and those with an inertia but no mass. Such a link is
-/// accepted only if the inertia of the whole body that contains it has no negative principal moment.
+/// Checks the links whose inertia is indefinite, with or without mass. Such a link is accepted only if the
+/// inertia of the whole body that contains it has no negative principal moment.
 pub(super) fn check_parts(model: &Model) -> Result<(), ModelError> {
     for warning in &model.warnings {
         let (ModelWarning::IndefinitePart { link, .. } | ModelWarning::InertiaWithoutMass { link }) = warning
         else {
             continue;
         };
+        let part = model.description.links.iter().find(|part| part.name == *link);
+        let Some(Inertial { inertia, .. }) = part.and_then(|part| part.inertial.as_ref()) else { continue };
         let body = &model.nodes[model.frames[model.frame(link)?].body];
-        if !is_definite(&body.about_com, body.mass) {
-            let moments = match warning {
-                ModelWarning::IndefinitePart { moments, .. } => *moments,
-                _ => principal_moments(&body.about_com.to_nalgebra()),
-            };
+        let moments = principal_moments(inertia);
+        // a link without a negative moment is not the one that makes its body indefinite
+        if moments[0] < 0.0 && !is_definite(&body.about_com, body.mass) {
             return Err(ModelError::IndefiniteInertia { link: link.clone(), moments });
         }
     }

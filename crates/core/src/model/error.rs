@@ -24,6 +24,8 @@ pub enum ModelError {
     AsymmetricInertia { link: String, difference: f64 },
     #[error("{what} of '{name}' contains infinity or NaN; specify finite numbers")]
     NotFinite { what: &'static str, name: String },
+    #[error("{what} of joint '{joint}' is NaN; specify a number, or infinity for no limit")]
+    LimitIsNan { joint: String, what: &'static str },
     #[error("{what} of '{name}' is {value}; expected {expected} (check the units)", value = exact(*value))]
     OutOfRange { what: &'static str, name: String, value: f64, expected: &'static str },
     #[error(

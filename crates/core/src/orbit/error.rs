@@ -292,15 +292,18 @@ pub enum OrbitError {
     },
     /// The integration needs a smaller step than permitted.
     #[error(
-        "the orbit cannot be integrated beyond t = {time} s: even with a step of {length} s, the integration error \
-         exceeds the tolerance; check whether the gravity field is discontinuous there",
-        time = short(*time), length = short(*length)
+        "the orbit cannot be integrated beyond t = {time} s: the integrator requires a step of {length} s, but steps \
+         must be longer than {shortest} s; check whether the gravity field is discontinuous there, or whether t is \
+         so large that shorter steps do not change it",
+        time = short(*time), length = short(length.abs()), shortest = short(*shortest)
     )]
     StepTooShort {
         /// Simulation time at which the step begins, s.
         time: f64,
-        /// Length of the step, s; negative for an integration backwards in time.
+        /// Length of the step that is too short, s; negative for an integration backwards in time.
         length: f64,
+        /// Length that steps must exceed, s.
+        shortest: f64,
     },
     /// An element set cannot be read.
     #[error(transparent)]

@@ -44,8 +44,9 @@ impl TimeLaw {
     ///
     /// # Errors
     /// [`ReferenceError::LimitNotPositive`] for an invalid limit, [`ReferenceError::Ramp`] for an invalid
-    /// ramp, [`ReferenceError::NoLimit`] if the limits do not determine the duration, and
-    /// [`ReferenceError::NotFinite`] if a limit is so small that the duration exceeds 1e60 s.
+    /// ramp, [`ReferenceError::NoLimit`] if the limits do not determine the duration,
+    /// [`ReferenceError::NotFinite`] if a limit is so small that the duration exceeds 1e60 s, and
+    /// [`ReferenceError::DurationNotPositive`] if the limits are so large that it is below 1e-12 s.
     pub fn within<P: TaskPath>(
         limits: &TaskLimits,
         ramp: Option<f64>,
@@ -55,8 +56,10 @@ impl TimeLaw {
         let law = ramp.map_or_else(|| Self::quintic(1.0), |ramp| Self::ramped(1.0, ramp))?;
         let share = ramp.unwrap_or(0.25);
         let duration = limits.stretch(&path_with(law), &[0.0, share, 0.5, 1.0 - share, 1.0]);
-        check_numbers("duration", [&duration])?;
-        if duration > 0.0 { Ok(Self { duration, ..law }) } else { Err(ReferenceError::NoLimit) }
+        if duration == 0.0 {
+            return Err(ReferenceError::NoLimit);
+        }
+        Ok(Self { ramp, ..Self::quintic(duration)? })
     }
 
     /// Returns the duration, s.

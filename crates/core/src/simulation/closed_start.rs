@@ -5,15 +5,11 @@ use crate::dynamics::{
     ClosedLoops, Data, close_loops, closure_errors, kinematics, project_configuration, project_velocity,
 };
 use crate::model::{BASE_NQ, BASE_NV, Constraint, Model};
-use crate::number_text::short;
 use crate::world::System;
 
 /// Largest initial opening of a loop or deviation of a mimic joint, m or rad, and largest rate of this error,
 /// m/s or rad/s, that are corrected even if `project` is false for the loop or mimic joint.
 const ACCEPTED: f64 = 1e-6;
-/// Largest opening of a loop that counts as closed, or error of a mimic joint that counts as satisfied, m or
-/// rad.
-const CLOSED: f64 = 1e-11;
 
 impl System {
     /// Returns the initial configuration and velocity with all loops closed; see [`closed_start`]. The
@@ -51,32 +47,12 @@ pub(crate) fn closed_start(
     follow_leaders(model, &mut q, &mut v);
     let (mut data, mut loops) = (Data::new(model), ClosedLoops::new(model, model.closures()));
     closure_errors(model, &mut data, &mut loops, &q);
-    check_open(&loops, loops.errors(), ["m", "rad"])?;
+    check_open(model, &loops, loops.errors(), ["m", "rad"])?;
     close_loops(model, &mut data, &mut loops, &mut q);
-    let is_open = |i: &usize| loops.magnitudes(*i, loops.errors()).iter().any(|error| *error > CLOSED);
-    let open: Vec<usize> = (0..loops.closures().len()).filter(is_open).collect();
-    if !open.is_empty() {
-        let is_mimic = |i: &usize| matches!(loops.closures()[*i].constraint, Constraint::Mimic { .. });
-        let describe = |i: &usize| {
-            let by = opening(loops.magnitudes(*i, loops.errors()), ["m", "rad"]);
-            let name = &loops.closures()[*i].name;
-            match is_mimic(i) {
-                true => format!(
-                    "the mimic joint '{name}' still differs by {by} from the position that its leader \
-                     prescribes"
-                ),
-                false => format!("the loop '{name}' stays open by {by}"),
-            }
-        };
-        let faults: Vec<String> = open.iter().map(describe).collect();
-        let poses = open.iter().any(|i| !is_mimic(i)).then_some("the poses and lengths of the loops");
-        let ratios = open.iter().any(is_mimic).then_some("the ratios and offsets of the mimic joints");
-        let check: Vec<&str> = poses.into_iter().chain(ratios).collect();
-        return Err(SimulationError::CannotClose { faults: faults.join(", "), check: check.join(" and ") });
-    }
+    loops.check_closed(model)?;
     kinematics(model, &mut data, &q, &v);
     let rates = loops.rates(&data, &v).to_vec();
-    check_open(&loops, &rates, ["m/s", "rad/s"])?;
+    check_open(model, &loops, &rates, ["m/s", "rad/s"])?;
     let locked = held.contains(&true).then_some((held, &[][..]));
     project_configuration(model, &mut data, &mut loops, &mut q, locked);
     kinematics(model, &mut data, &q, &v);
@@ -104,11 +80,15 @@ fn follow_leaders(model: &Model, q: &mut [f64], v: &mut [f64]) {
 /// Checks that no loop or mimic joint without `project` has an error, or a rate of its error, above
 /// [`ACCEPTED`]. `x` contains the errors of all scalar constraints, or the rates of these errors; `units`
 /// contains the units of distances and of angles in `x`.
-fn check_open(loops: &ClosedLoops<f64>, x: &[f64], units: [&'static str; 2]) -> Result<(), SimulationError> {
+fn check_open(
+    model: &Model,
+    loops: &ClosedLoops<f64>,
+    x: &[f64],
+    units: [&str; 2],
+) -> Result<(), SimulationError> {
     for (i, closure) in loops.closures().iter().enumerate().filter(|(_, closure)| !closure.project) {
-        let sizes = loops.magnitudes(i, x);
-        if sizes.iter().any(|size| *size > ACCEPTED) {
-            let (name, by) = (closure.name.clone(), opening(sizes, units));
+        if loops.magnitudes(i, x).iter().any(|size| *size > ACCEPTED) {
+            let (name, by) = (closure.name.clone(), loops.opening(model, i, x, units));
             let is_moving = units[0] != "m";
             return Err(match closure.constraint {
                 Constraint::Frames { .. } => SimulationError::OpenLoop { name, by, is_moving },
@@ -117,11 +97,4 @@ fn check_open(loops: &ClosedLoops<f64>, x: &[f64], units: [&'static str; 2]) -> 
         }
     }
     Ok(())
-}
-
-/// Formats a distance and an angle, or their rates, with their `units`. Zero values are omitted.
-fn opening(sizes: [f64; 2], units: [&str; 2]) -> String {
-    let parts = sizes.iter().zip(units).filter(|(size, _)| **size > 0.0);
-    let parts: Vec<String> = parts.map(|(size, unit)| format!("{} {unit}", short(*size))).collect();
-    parts.join(" and ")
 }

@@ -4,6 +4,7 @@ use super::checkpoint_error::CheckpointError;
 use super::recording::Recording;
 use crate::contact::ContactError;
 use crate::control::ControlError;
+use crate::dynamics::UnsatisfiedConstraints;
 use crate::earth::EarthError;
 use crate::environment::EnvironmentError;
 use crate::gravity::GravityError;
@@ -32,11 +33,8 @@ pub enum SimulationError {
         state = if *is_moving { "rate" } else { "position" }
     )]
     OpenMimic { joint: String, by: String, is_moving: bool },
-    #[error(
-        "no configuration near the initial one satisfies all constraints of loops and mimic joints: \
-         {faults}; check {check}, or start closer to a configuration that satisfies them"
-    )]
-    CannotClose { faults: String, check: String },
+    #[error(transparent)]
+    CannotClose(#[from] UnsatisfiedConstraints),
     #[error("the array '{name}' has {got}; expected {expected} for this robot", got = count(*got, "number"))]
     WrongLength { name: &'static str, expected: usize, got: usize },
     #[error("system '{system}': {source}")]

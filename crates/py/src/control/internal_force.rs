@@ -1,6 +1,6 @@
 //! Commanded internal forces of closed loops.
 
-use crate::arrays::{Input, finite, wrong_shape};
+use crate::arrays::fixed;
 use crate::pickling::{ConstructorCall, Reduced};
 use onorbit_core::control::InternalForce;
 use pyo3::prelude::*;
@@ -43,7 +43,8 @@ impl PyInternalForce {
     #[new]
     #[pyo3(signature = (r#loop, *, force=None, moment=None))]
     fn new(r#loop: &str, force: Option<Any<'_, '_>>, moment: Option<Any<'_, '_>>) -> PyResult<Self> {
-        let read = |part: Option<Any<'_, '_>>, name| part.map(|part| vector(part, name)).transpose();
+        let read =
+            |part: Option<Any<'_, '_>>, name| part.map(|part| fixed::<3>(part, name, &[3])).transpose();
         let (force, moment) = (read(force, "force")?, read(moment, "moment")?);
         Ok(Self { force: InternalForce { closure: r#loop.to_owned(), force, moment } })
     }
@@ -72,12 +73,4 @@ impl PyInternalForce {
         keywords.set_item("moment", self.force.moment)?;
         ConstructorCall::new("InternalForce", (&self.force.closure,), &keywords)?.reduce(py)
     }
-}
-
-/// Reads a vector (3,) of finite numbers.
-fn vector(value: Any<'_, '_>, name: &'static str) -> PyResult<[f64; 3]> {
-    let (py, given) = (value.py(), Input::new(value, name)?);
-    let [x, y, z] = *given.data() else { return Err(wrong_shape(py, name, "(3,)", given.shape())) };
-    finite(py, name, &[x, y, z])?;
-    Ok([x, y, z])
 }

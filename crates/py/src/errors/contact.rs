@@ -19,6 +19,7 @@ impl IntoPython for ContactError {
             Self::Unsolved { contacts, change, .. } => fields!(py, "name": contacts, "got": change),
             Self::NoLink { contact, pattern, .. } => fields!(py, "name": contact, "got": pattern),
             Self::NoShape { contact, .. }
+            | Self::NoPieces { contact }
             | Self::SameLink { contact }
             | Self::ImpactLaw { contact, .. }
             | Self::Geometry { contact, .. } => fields!(py, "name": contact),

@@ -28,6 +28,7 @@ impl IntoPython for ModelError {
                 raise(py, "ModelError", &message, &fields!(py, "link": link))
             }
             Self::ZeroAxis { joint }
+            | Self::LimitIsNan { joint, .. }
             | Self::Negative { joint, .. }
             | Self::FixedJoint { joint, .. }
             | Self::NoStiffness { joint }

@@ -57,7 +57,7 @@ impl SimulationErrorExt for SimulationError {
             Self::OpenLoop { name, .. } | Self::OpenMimic { joint: name, .. } => {
                 raise(py, "InputError", &message, &fields!(py, "name": name))
             }
-            Self::CannotClose { .. } => plain(py, "InputError", &message),
+            Self::CannotClose(_) => plain(py, "InputError", &message),
             Self::StepTooSmall { time, step } | Self::StepsTooShort { time, step, .. } => raise(
                 py,
                 "SimulationError",

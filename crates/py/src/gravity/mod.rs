@@ -25,13 +25,14 @@ pub(crate) fn gravity_of(
     mu: Option<f64>,
     earth: Option<&Arc<Earth>>,
 ) -> PyResult<Option<Gravity>> {
-    let mut fields = effects.iter().filter_map(|effect| effect.get().field());
-    let field = fields.next();
-    if let (Some(field), Some(other)) = (field, fields.next()) {
+    let fields: Vec<_> = effects.iter().filter_map(|effect| effect.get().field()).collect();
+    if fields.len() > 1 {
+        let names: Vec<&str> = fields.iter().map(|field| field.name()).collect();
         let message =
-            format!("two gravity fields are given, {} and {}; give only one", field.name(), other.name());
+            format!("{} gravity fields are given: {}; give only one", fields.len(), names.join(", "));
         return Err(plain(py, "GravityError", &message));
     }
+    let field = fields.first().copied();
     let bodies: Vec<_> = effects.iter().filter_map(|effect| effect.get().luminary()).collect();
     let gravity = match (field, mu) {
         (Some(field), mu) => {

@@ -4,15 +4,12 @@ use super::closed_loop::{PyLoop, loops_in, with_loops};
 use super::{Any, Array, External, PyModel};
 use crate::arrays::{Input, Threads, array_of, wrong_shape};
 use crate::dynamics::evaluate;
-use crate::errors::{fields, raise};
+use crate::errors::{fields, plain, raise};
 use onorbit_core::batch::Kernel;
 use onorbit_core::dynamics::{ClosedLoops, Data, close_loops, close_velocity};
 use onorbit_core::model::{Closure, QUATERNION};
-use onorbit_core::number_text::{short, unlike};
+use onorbit_core::number_text::unlike;
 use pyo3::prelude::*;
-
-/// Error of a loop, m and rad, below which the loop counts as closed.
-const CLOSED: f64 = 1e-11;
 
 #[pymethods]
 impl PyModel {
@@ -157,22 +154,8 @@ impl PyModel {
         let model = &*self.model;
         let mut loops = ClosedLoops::new(model, model.closures());
         close_loops(model, &mut Data::new(model), &mut loops, &mut closed);
-        let describe = |(i, closure): (usize, &Closure)| {
-            let sizes = loops.magnitudes(i, loops.errors());
-            let is_closed = sizes.iter().all(|size| *size < CLOSED);
-            let [distance, angle] = sizes.map(short);
-            (!is_closed).then(|| format!("'{}' stays open by {distance} m and {angle} rad", closure.name))
-        };
-        let open: Vec<String> = model.closures().iter().enumerate().filter_map(describe).collect();
-        if open.is_empty() {
-            return Ok(array_of(py, &[closed.len()], &closed));
-        }
-        let message = format!(
-            "the loops cannot all be closed near this configuration: {}; check the poses and lengths of the \
-             loops and the ratios and offsets of mimic joints, or start closer to a closed configuration",
-            open.join(", ")
-        );
-        Err(raise(py, "ConvergenceError", &message, &fields!(py,)))
+        loops.check_closed(model).map_err(|error| plain(py, "ConvergenceError", &error.to_string()))?;
+        Ok(array_of(py, &[closed.len()], &closed))
     }
 
     /// Return the nearest velocity at which the loops remain closed and mimic joints follow their leaders.

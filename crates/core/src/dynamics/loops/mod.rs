@@ -15,6 +15,7 @@ mod reduced;
 mod refinement;
 mod response;
 mod rows;
+mod unsatisfied;
 
 pub use closing::close_loops;
 pub use constrained::constrained_forward_dynamics;
@@ -26,6 +27,7 @@ pub(crate) use projection::{project_configuration, project_velocity};
 
 pub use reduced::{ConstrainedFreeFloating, constrained_free_floating};
 pub(crate) use reduced::{add_leaders, length_joints};
+pub use unsatisfied::UnsatisfiedConstraints;
 
 use crate::dynamics::Data;
 use crate::dynamics::kinematics::frame_offset;

@@ -40,12 +40,12 @@ impl SpaceWeatherTable {
     pub fn from_csv(text: &str) -> Result<Self, AtmosphereError> {
         let wrong = |line: usize, problem: String| AtmosphereError::Table { line: line + 1, problem };
         let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
-        let (_, header) = lines.next().ok_or_else(|| {
+        let (top, header) = lines.next().ok_or_else(|| {
             wrong(0, "the table is empty; expected a header line and one row per day".to_owned())
         })?;
         let names: Vec<&str> = header.split(',').map(str::trim).collect();
         let column = |name: &str| names.iter().position(|n| *n == name);
-        let missing = |name: &str| wrong(0, format!("the header has no column {name}; add this column"));
+        let missing = |name: &str| wrong(top, format!("the header has no column {name}; add this column"));
         let date = column("DATE").ok_or_else(|| missing("DATE"))?;
         let has_history = column("AP1").is_some();
         let needed = if has_history { COLUMNS.len() } else { THREE_HOURS };
@@ -94,7 +94,7 @@ impl SpaceWeatherTable {
             days.push(numbers);
         }
         if days.is_empty() {
-            return Err(wrong(1, "the table has no rows; expected one row per day".to_owned()));
+            return Err(wrong(top + 1, "the table has no rows; expected one row per day".to_owned()));
         }
         Ok(Self { first, days, has_history, name: "the table".to_owned() })
     }

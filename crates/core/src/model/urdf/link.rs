@@ -42,7 +42,7 @@ pub(super) fn read_link(
     // without warnings: most runs only draw collision shapes, as substitutes for missing visual shapes
     for collision in link.children("collision") {
         let mesh = collision.child("geometry").and_then(|geometry| geometry.child("mesh"));
-        let file = mesh.map(|mesh| mesh.text("filename").unwrap_or_default());
+        let file = mesh.and_then(|mesh| mesh.text("filename"));
         match file.filter(|name| context.meshes.find(name).is_none()) {
             Some(name) => result.skipped_collisions.push(format!(
                 "there is no mesh file '{name}'; correct its name, or give the folder of its package"

@@ -84,7 +84,12 @@ impl<'a> Meshes<'a> {
                      command line: --package-path)"
                 )
             }
-            _ => "; copy each missing file into a folder 'meshes' beside the URDF file".to_owned(),
+            Some(MeshName::File(_)) => {
+                "; copy each missing file into a folder 'meshes' beside the URDF file".to_owned()
+            }
+            None => {
+                "; only local files are read: give a path, package://PACKAGE/PATH or file://PATH".to_owned()
+            }
         };
         let such = if self.missing.len() == 1 { ":" } else { ", the first being" };
         Some(format!("{files} not found{such} '{first}'; simpler shapes are drawn instead{hint}"))
@@ -252,5 +257,9 @@ mod tests {
         for name in ["", "package://", "package:///x", "http://a/b.stl", "a\u{0}b", "$(find x)/y.dae"] {
             assert_eq!(meshes.resolve(name), name);
         }
+        let mut meshes = Meshes::new(None, &[]);
+        meshes.resolve("http://a/b.stl");
+        let warning = meshes.warnings().next().expect("it is missing").to_string();
+        assert!(warning.contains("'http://a/b.stl'") && warning.contains("only local files"), "{warning}");
     }
 }

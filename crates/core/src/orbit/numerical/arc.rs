@@ -133,7 +133,7 @@ impl Arcs {
             // use the length by which the rounded time actually advances
             length = (time + length) - time;
             if length.abs() <= shortest {
-                return Err(OrbitError::StepTooShort { time, length });
+                return Err(OrbitError::StepTooShort { time, length, shortest });
             }
             let shorter = match start.step(length, half.steps.last(), &mut outside) {
                 Ok(Some((step, error))) => {
