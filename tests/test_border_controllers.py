@@ -63,5 +63,5 @@ def test_a_simulation_cannot_be_run_within_its_run() -> None:
             return np.zeros(7)
 
     simulation = oo.Simulation(model, model.neutral(), np.zeros(model.nv), controller=Again())
-    with pytest.raises(SimulationError, match="being advanced"):
+    with pytest.raises(SimulationError, match="in use by"):
         simulation.run(0.01)

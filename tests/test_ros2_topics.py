@@ -285,7 +285,7 @@ def test_links_with_names_of_other_frames_get_names_of_their_own() -> None:
     assert parents["base"] == "world" and parents["eci_2"] == "base" and parents["base_3"] == "eci_2"
     read = oo.Model.from_urdf_string(urdf_text(model, names))
     assert set(read.body_names) | {frame.name for frame in read.frames} == set(names.values())
-    with pytest.warns(UserWarning, match="because other frames have their names: 'base' → 'base_3'$"):
+    with pytest.warns(UserWarning, match="already have are renamed there: 'base' → 'base_3'$"):
         assert frames_of("chaser/", model)["world"] == "world", "chaser/world is another frame"
 
 

@@ -119,7 +119,7 @@ def test_two_threads_cannot_use_one_stepper() -> None:
             try:
                 use()
             except oo.exceptions.SimulationError as error:
-                assert "being advanced" in str(error)
+                assert "in use by" in str(error)
                 refused += 1
             else:
                 break  # the thread has not begun, or has ended
