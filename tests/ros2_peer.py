@@ -68,6 +68,7 @@ class Peer:
         self.participant = DomainParticipant(domain)
         self.readers: dict[str, DataReader] = {}
         self.writers: dict[str, DataWriter] = {}
+        self.met: set[tuple[str, bytes]] = set()
 
     def hear(self, topic: str, kind: str, is_latched: bool = False) -> None:
         """Subscribes to a topic, again if it was subscribed before; a leading slash marks a ROS topic."""
@@ -95,18 +96,18 @@ class Peer:
         If `nodes` are given, the subscriber must be one of them. Of several equal messages, all have arrived
         when the call returns true.
         """
-        is_new = topic not in self.writers
-        if is_new:
+        if topic not in self.writers:
             named = Topic(self.participant, f"rt{topic}", TYPES[kind])
             self.writers[topic] = DataWriter(self.participant, named, qos=_qos(False))
         writer = self.writers[topic]
         end = time.monotonic() + seconds
-        while not _known(writer.get_matched_subscriptions(), writer.get_matched_subscription_data, nodes):
+        while not (
+            found := _known(writer.get_matched_subscriptions(), writer.get_matched_subscription_data, nodes)
+        ):
             if time.monotonic() > end:
                 return False
             time.sleep(0.002)
-        if is_new:
-            time.sleep(0.05)  # a reader finds a writer at another time than a writer finds the reader
+        self._meet(topic, found)
         for _ in range(times):
             writer.write(_message(TYPES[kind], values))
         return times == 1 or writer.wait_for_acks(duration(seconds=seconds))
@@ -122,8 +123,20 @@ class Peer:
         while True:
             found = _known(reader.get_matched_publications(), reader.get_matched_publication_data, nodes)
             if found or time.monotonic() > end:
+                self._meet(topic, found)
                 return list(found[0].key.bytes) if found else None
             time.sleep(0.002)
+
+    def _meet(self, topic: str, found: list[Any]) -> None:
+        """Waits until new endpoints at the other end, too, have found that of this process.
+
+        A reader finds a writer at another time than the writer finds the reader; a message that is sent in
+        between is lost.
+        """
+        new = {(topic, one.key.bytes) for one in found} - self.met
+        if new:
+            time.sleep(0.1)
+            self.met |= new
 
 
 def _known(handles: list[int], data_of: Any, nodes: Sequence[list[int]]) -> list[Any]:
