@@ -75,6 +75,7 @@ class Peer:
         name = f"rt{topic}" if topic.startswith("/") else topic
         named = Topic(self.participant, name, TYPES[kind])
         self.readers[topic] = DataReader(self.participant, named, qos=_qos(is_latched))
+        self.met = {(name, key) for name, key in self.met if name != topic}
 
     def take(self, topic: str, count: int, seconds: float = 20.0) -> list[Any]:
         """Returns at least `count` messages, or those that arrive within `seconds`."""
@@ -128,7 +129,7 @@ class Peer:
             time.sleep(0.002)
 
     def _meet(self, topic: str, found: list[Any]) -> None:
-        """Waits until new endpoints at the other end, too, have found that of this process.
+        """Waits 0.1 s if there are new endpoints, in which they also find that of this process.
 
         A reader finds a writer at another time than the writer finds the reader; a message that is sent in
         between is lost.

@@ -58,6 +58,13 @@ fn an_indefinite_body_is_reported_with_the_indefinite_link_and_its_own_moments()
     for (name, moments) in [("wheel", [0.1, 0.1, 0.2]), ("bad", [-5.0, 1.0, 1.0])] {
         let link = Link::new(name, massless(moments));
         builder.add("base", fixed(name, Isometry3::identity()), link).unwrap();
+        // a thin rod in rotated axes: its least moment is zero up to rounding
+        let axes = *Rotation3::from_euler_angles(0.3, 0.7, -0.4).matrix();
+        let mut rod = massless([0.0, 0.1, 0.1]).unwrap();
+        rod.inertia = axes * rod.inertia * axes.transpose();
+        rod.inertia = (rod.inertia + rod.inertia.transpose()) * 0.5;
+        let name = format!("rod before {name}");
+        builder.add("base", fixed(&name, Isometry3::identity()), Link::new(&name, Some(rod))).unwrap();
     }
     let expected = ModelError::IndefiniteInertia { link: "bad".into(), moments: [-5.0, 1.0, 1.0] };
     assert_eq!(builder.build().unwrap_err(), expected);

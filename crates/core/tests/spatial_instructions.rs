@@ -18,7 +18,7 @@ use std::sync::{Arc, atomic::AtomicBool};
 
 /// Entry points of the crate; functions of libraries that are named after their instruction set and detect
 /// the processor. Intrinsics are called only from the entry points and are inlined except in test builds.
-const ENTRIES: [&str; 4] = ["enter_fused", "enter_fused_avx512", "enter_lanes4", "enter_lanes8"];
+const ENTRIES: [&str; 4] = ["enter_fused", "enter_wide_registers", "enter_lanes4", "enter_lanes8"];
 const LIBRARIES: [&str; 4] = ["_avx2", "_avx512", "_with_fma", "core_arch::x86::"];
 
 /// Runs one state, a batch, a rollout and a simulation, so that their code is part of this program.

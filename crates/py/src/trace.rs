@@ -123,8 +123,8 @@ macro_rules! getters {
             }
 
             /// Tracking errors (desired minus actual) by the name of the control: (T, 6) for a tool, m and rad;
-            /// (T, k) for k joints, in the unit of the commanded quantity; or (T, 1) for a :class:`GripForce`,
-            /// N. They are zero while the control is inactive.
+            /// (T, k) for k joints, rad or m (rad/s or m/s for a :class:`JointPid` with the interface
+            /// ``velocity``); or (T, 1) for a :class:`GripForce`, N. They are zero while the control is inactive.
             #[getter]
             fn tracking<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
                 let all = PyDict::new(this.py());

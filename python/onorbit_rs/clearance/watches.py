@@ -34,7 +34,10 @@ def _pose(given: ArrayLike, zone: str) -> NDArray[np.float64]:
     try:
         pose = np.array(given, dtype=np.float64)
     except (TypeError, ValueError):
-        message = f"the pose of the zone {zone!r} is {given!r:.60}; expected a (4, 4) array of numbers, m"
+        message = (
+            f"the pose of the zone {zone!r} is {given!r:.60}; expected a (4, 4) array of numbers, with the "
+            "translation in m"
+        )
         raise InputError(message, name="pose", got=given) from None
     if pose.shape != (4, 4):
         message = f"the pose of the zone {zone!r} has shape {pose.shape}; expected (4, 4)"

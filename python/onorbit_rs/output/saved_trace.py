@@ -40,8 +40,8 @@ class SavedTrace:
     def tracking(self) -> dict[str, Any]:
         """Tracking errors by the name of the control, as in :class:`onorbit_rs.Trace`.
 
-        They are (T, 6), m and rad, for a tool; (T, k), rad or m, for k joints (rad/s or m/s if the control
-        commands rates); and (T, 1), N, for a grip force.
+        They are (T, 6), m and rad, for a tool; (T, k), rad or m, for k joints (rad/s or m/s for a
+        ``joint_pid`` with the interface ``velocity``); and (T, 1), N, for a grip force.
         """
         return self._by_owner("tracking")
 

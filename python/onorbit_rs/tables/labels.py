@@ -76,9 +76,9 @@ def labels(path: str, shape: Sequence[int], names: Names) -> list[Label]:
 def _parts(kind: str, width: int, names: Names) -> Iterator[tuple[str, str]]:
     """Yield the name and the unit of each number of a one-dimensional row."""
     parts: Mapping[str, tuple[slice, str]] = COLUMNS[kind].parts if kind in COLUMNS else {}
-    if kind == "tracking" and width == 6:
-        parts = {"position": (slice(0, 3), "m"), "attitude": (slice(3, 6), "rad")}
-    if parts:
+    if kind == "tracking":
+        yield from _of_errors(width, names)
+    elif parts:
         for part, (entries, unit) in parts.items():
             count = len(range(width)[entries])
             if part == "joints":
@@ -90,6 +90,21 @@ def _parts(kind: str, width: int, names: Names) -> Iterator[tuple[str, str]]:
         yield from _of_joints("", width, _simple_unit(kind), names)
     else:
         yield from ((name, _simple_unit(kind)) for name in _components(width))
+
+
+def _of_errors(width: int, names: Names) -> Iterator[tuple[str, str]]:
+    """Yield the name and the unit of each tracking error of a control.
+
+    Six errors are those of a tool. Otherwise, the column does not show whether the control follows positions
+    or rates, or whether a single error is that of a grip force, so that the unit names all possibilities.
+    """
+    if width == 6:
+        yield from ((f"position/{axis}", "m") for axis in XYZ)
+        yield from ((f"attitude/{axis}", "rad") for axis in XYZ)
+        return
+    unit = "rad, m or N; for rates, rad/s or m/s" if width == 1 else "rad or m; for rates, rad/s or m/s"
+    joints = names.joints if len(names.joints) == width else [str(k) for k in range(width)]
+    yield from ((joint, unit) for joint in joints)
 
 
 def _of_joints(prefix: str, count: int, unit: str, names: Names) -> Iterator[tuple[str, str]]:

@@ -87,11 +87,13 @@ pub(super) fn check_parts(model: &Model) -> Result<(), ModelError> {
             continue;
         };
         let part = model.description.links.iter().find(|part| part.name == *link);
-        let Some(Inertial { inertia, .. }) = part.and_then(|part| part.inertial.as_ref()) else { continue };
+        let Some(Inertial { inertia, mass, .. }) = part.and_then(|part| part.inertial.as_ref()) else {
+            continue;
+        };
         let body = &model.nodes[model.frames[model.frame(link)?].body];
-        let moments = principal_moments(inertia);
-        // a link without a negative moment is not the one that makes its body indefinite
-        if moments[0] < 0.0 && !is_definite(&body.about_com, body.mass) {
+        // a definite link is not the one that makes its body indefinite
+        if !is_definite(&Sym3::from(*inertia), *mass) && !is_definite(&body.about_com, body.mass) {
+            let moments = principal_moments(inertia);
             return Err(ModelError::IndefiniteInertia { link: link.clone(), moments });
         }
     }

@@ -191,9 +191,9 @@ impl<'a> Gripper<'a> {
         rates
     }
 
-    /// Returns the configuration of the open gripper, in which each joint that closes it is at its
-    /// limit or, with closed loops, the first joint reaches its limit; `None` if such a joint has no limits or,
-    /// with closed loops, if no joint reaches a limit.
+    /// Returns the configuration of the open gripper. In it, each joint that closes the gripper is at its limit
+    /// or, with closed loops, the first of these joints has reached its limit. Returns `None` if one of these
+    /// joints has no limits or, with closed loops, if no joint reaches a limit.
     fn opened(&mut self, rates: &[f64]) -> Option<Vec<f64>> {
         let model = &*self.system.model;
         let limit = |j: usize, rate: f64| {

@@ -34,7 +34,7 @@ fn enter_fused<R>(kernel: impl FnOnce() -> R) -> R {
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma")]
-fn enter_fused_avx512<R>(kernel: impl FnOnce() -> R) -> R {
+fn enter_wide_registers<R>(kernel: impl FnOnce() -> R) -> R {
     kernel()
 }
 
@@ -155,7 +155,7 @@ impl Real for Fused {
         {
             if has_wide_registers() {
                 // SAFETY: the processor has all features of AVX-512 that the entry point requires.
-                return unsafe { enter_fused_avx512(kernel) };
+                return unsafe { enter_wide_registers(kernel) };
             }
             assert!(Self::is_available(), "fused kernels require a processor with AVX2 and FMA");
             // SAFETY: the assertion above guarantees that the processor has both features.

@@ -7,8 +7,8 @@ pub(super) const FAST_SINE_LIMIT: f64 = 1e5;
 
 /// Returns the sine and cosine of `x`, rad, for `|x| < 1e5`.
 ///
-/// Reduces the angle to `r = x − k π/2` with `|r| ≤ π/4` by subtracting `k π/2`, with π/2 in three parts (Cody and Waite),
-/// then evaluates the minimax polynomials of FreeBSD's `k_sin.c` and `k_cos.c`.
+/// Reduces the angle to `r = x − k π/2` with `|r| ≤ π/4`, where π/2 is split into three parts (Cody and
+/// Waite), then evaluates the minimax polynomials of FreeBSD's `k_sin.c` and `k_cos.c`.
 #[inline(always)]
 pub(super) fn sin_cos<S: Real>(x: S) -> (S, S) {
     const ROUND: f64 = 6_755_399_441_055_744.0; // 1.5 · 2^52: adding it rounds to an integer
