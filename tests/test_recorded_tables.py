@@ -16,6 +16,7 @@ from onorbit_rs.common.rotations import matrix_from_quaternion
 from onorbit_rs.exceptions import InputError, NotFoundError
 from onorbit_rs.tables import ccsds
 from onorbit_rs.tables.files import write_csv, write_parquet
+from onorbit_rs.tables.labels import Names, labels
 
 SHORT = {"simulation.duration": "20 ms"}
 EPOCH = "2024-03-01T12:00:00 UTC"
@@ -195,3 +196,22 @@ def test_a_world_requires_the_name_of_a_system(tmp_path: Path) -> None:
         from onorbit_rs.cli.export import export
 
         export(tmp_path / "out")
+
+
+@pytest.mark.parametrize(
+    ("width", "expected"),
+    [
+        (1, [("tracking_grip/0", "rad, m or N; for rates, rad/s or m/s")]),
+        (2, [(f"tracking_grip/{name}", "rad or m; for rates, rad/s or m/s") for name in ("turn", "slide")]),
+        (
+            6,
+            [(f"tracking_grip/position/{axis}", "m") for axis in "xyz"]
+            + [(f"tracking_grip/attitude/{axis}", "rad") for axis in "xyz"],
+        ),
+    ],
+)
+def test_tracking_errors_have_the_units_that_their_number_shows(
+    width: int, expected: list[tuple[str, str]]
+) -> None:
+    names = Names(["turn", "slide"], ["base", "arm", "rod"], ["rad", "m"])
+    assert [(label.name, label.unit) for label in labels("tracking_grip", (width,), names)] == expected
